@@ -1,0 +1,1 @@
+"""Sub-chains that several mechanisms share: their kinematics, joints and bodies."""

@@ -1,0 +1,1 @@
+"""The words in which every mechanism is written."""

@@ -1,0 +1,1 @@
+"""Tables of purchased parts; `designs.language.supplies` reads them."""

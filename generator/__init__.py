@@ -1,0 +1,1 @@
+"""Numbers to solids. The generator knows features and bodies, never a mechanism by name."""

@@ -1,0 +1,1 @@
+"""One builder per part family: frozen numbers in, one valid solid out."""
