@@ -8,6 +8,8 @@ from setuptools import find_packages, setup
 STOREYS = ("app", "designs", "generator", "analysis", "exports")
 
 setup(
-    packages=[f"linkwright.{name}" for storey in STOREYS for name in find_packages(".", include=[storey, f"{storey}.*"])],
+    packages=[
+        f"linkwright.{name}" for storey in STOREYS for name in find_packages(".", include=[storey, f"{storey}.*"])
+    ],
     package_dir={f"linkwright.{storey}": storey for storey in STOREYS},
 )

@@ -33,6 +33,9 @@ Progress = Callable[[int, int, str], None]
 
 #: Rows of the table of nearest pairs.
 N_NEAREST = 10
+#: Share by which the least distance of a pair may exceed the exact one: at first, and for the pairs of that table.
+#: Distances below the required clearance are always exact.
+_ROUGH, _FINE = 0.05, 1e-3
 #: A joint's mating faces take one bit of a byte.
 _MAX_JOINTS = 8
 
@@ -143,26 +146,32 @@ def _scan_pairs(assembly: Assembly, pairs: list[tuple[int, int]], Ts: Array, pro
         built = dict(zip(kinds, pool.map(build_contact_body, kinds.values()), strict=True))
 
         def scan(pair: tuple[int, int]) -> _Pair:
-            result = _scan(assembly, built, Ts, *pair)
+            result = _scan(assembly, built, Ts, *pair, _ROUGH)
             if progress is not None:
                 progress(next(done), len(pairs), f"{names[pair[0]]} / {names[pair[1]]}")
             return result
 
         try:
-            return list(pool.map(scan, pairs))
+            found = list(pool.map(scan, pairs))
+            near = sorted((pair.found.scan.value for pair in found), key=float)[:N_NEAREST][-1]
+            doubtful = [k for k, pair in enumerate(found) if 0.0 < pair.found.scan.value * (1.0 - _ROUGH) <= near]
+            again = pool.map(lambda k: _scan(assembly, built, Ts, *pairs[k], _FINE), doubtful)
+            for k, pair in zip(doubtful, again, strict=True):
+                found[k] = pair
+            return found
         except BaseException:
             pool.shutdown(cancel_futures=True)
             raise
 
 
-def _scan(assembly: Assembly, built: dict[str, ContactBody], Ts: Array, i: int, j: int) -> _Pair:
+def _scan(assembly: Assembly, built: dict[str, ContactBody], Ts: Array, i: int, j: int, share: float) -> _Pair:
     body_i, body_j = assembly.bodies[i], assembly.bodies[j]
     a, b = built[body_i.body.kind], built[body_j.body.kind]
     exempt_i, exempt_j = exempt_faces(assembly, body_i, body_j)
     Ts_ij = invert_pose(Ts[:, i]) @ Ts[:, j]
     allowance = a.deviation + b.deviation
     need = assembly.design.clearance.minimum + allowance
-    found = scan_pair(a, b, Ts_ij, need=need, exempt_a=exempt_i, exempt_b=exempt_j)
+    found = scan_pair(a, b, Ts_ij, need=need, share=share, exempt_a=exempt_i, exempt_b=exempt_j)
     interference = None
     if found.is_colliding.any():
         interference = measure_interference(body_i, body_j, a, b, Ts_ij, found, exempt_i, exempt_j)

@@ -10,6 +10,8 @@ Faces are numbered through a body: a part's faces follow those of the parts befo
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from linkwright.designs.language.joints import Joint, JointKind
@@ -36,26 +38,62 @@ def mating_faces(body: AssembledBody, joint: Joint, *, as_parent: bool) -> Array
     Returns:
         uint8 over the body's faces, shape (n_faces,). A pair of faces is exempt if both are 1.
     """
+    socket = joint.kind is JointKind.SPHERICAL and as_parent
+    runs = np.concatenate([np.full(len(a.solid.surfaces), a.part.runs_in_joint) for a in body.parts])
+    steady = _faces(body, joint, as_parent, is_revolved_about if socket else _KEPT_BY[joint.kind])
+    return (runs & steady).astype(np.uint8)
+
+
+def steady_faces(body: AssembledBody, joint: Joint, *, as_parent: bool) -> Array:
+    """Bits by which a search for the end of a joint's travel leaves out pairs of faces that cannot stop it.
+
+    They are those whose gap the motion leaves unchanged, whether or not their parts run in the joint: two faces of
+    revolution about a revolute joint's axis, two faces swept along a prismatic one's, a sphere about a ball joint's
+    centre and anything. Where such a face ends within a turn it borders a face that is not of this kind, and that one
+    meets whatever the first would have met.
+
+    Args:
+        body, joint, as_parent: as for `mating_faces`.
+
+    Returns:
+        uint8 over the body's faces, shape (n_faces,). A pair is left out if the two share a bit.
+    """
+    steady = _faces(body, joint, as_parent, _KEPT_BY[joint.kind])
+    if joint.kind in (JointKind.REVOLUTE, JointKind.PRISMATIC):
+        return steady.astype(np.uint8)
+    # Bit 1: a sphere of the child against all of the parent; bit 2: a sphere of the parent against all of the child.
+    own, other = (2, 1) if as_parent else (1, 2)
+    return np.where(steady, own | other, other).astype(np.uint8)
+
+
+def _faces(body: AssembledBody, joint: Joint, as_parent: bool, claim: Callable[..., bool]) -> Array:
+    """Whether a claim about surface, point and axis holds for each face of a body, the joint seen from its part."""
     point, axis = (joint.p_parent, joint.axis_parent) if as_parent else (joint.p_child, joint.axis_child)
     flags = []
     for assembled in body.parts:
         R, p = assembled.T_body_part[:3, :3], assembled.T_body_part[:3, 3]
         at, along = R.T @ (np.asarray(point) - p), R.T @ np.asarray(axis)
-        runs = assembled.part.runs_in_joint
-        flags += [runs and _mates(surface, joint.kind, at, along, as_parent) for surface in assembled.solid.surfaces]
-    return np.array(flags, dtype=np.uint8)
+        flags += [claim(surface, at, along, TOLERANCE) for surface in assembled.solid.surfaces]
+    return np.array(flags, dtype=bool)
 
 
-def _mates(surface: Surface, kind: JointKind, point: Array, axis: Array, as_parent: bool) -> bool:
-    if kind is JointKind.SPHERICAL and not as_parent:
-        return is_sphere_at(surface, point, TOLERANCE)
-    if kind is JointKind.PRISMATIC:
-        along = abs(float(np.dot(surface.axis, axis)))
-        flat = surface.kind is SurfaceKind.PLANE and along < TOLERANCE
-        return flat or (surface.kind is SurfaceKind.CYLINDER and along > 1.0 - TOLERANCE**2)
-    if kind is JointKind.UNIVERSAL:  # two axes at once: no gap but that of a sphere is kept
-        return is_sphere_at(surface, point, TOLERANCE)
-    return is_revolved_about(surface, point, axis, TOLERANCE)
+def _is_sphere_at(surface: Surface, point: Array, axis: Array, tol: float) -> bool:
+    return is_sphere_at(surface, tuple(point), tol)
+
+
+def _is_swept_along(surface: Surface, point: Array, axis: Array, tol: float) -> bool:
+    if surface.kind is SurfaceKind.PLANE:
+        return abs(float(np.dot(surface.axis, axis))) <= tol
+    return surface.kind is SurfaceKind.CYLINDER and float(np.linalg.norm(np.cross(surface.axis, axis))) <= tol
+
+
+#: Which surfaces a joint's motion maps into themselves.
+_KEPT_BY: dict[JointKind, Callable[..., bool]] = {
+    JointKind.REVOLUTE: is_revolved_about,
+    JointKind.PRISMATIC: _is_swept_along,
+    JointKind.SPHERICAL: _is_sphere_at,
+    JointKind.UNIVERSAL: _is_sphere_at,
+}
 
 
 def body_triangles(body: AssembledBody) -> tuple[Array, Array, Array]:

@@ -7,12 +7,14 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
+from rich.padding import Padding
 from rich.text import Text
 from rich.tree import Tree
 
 from linkwright.analysis.findings import Finding, Report, Severity
 from linkwright.analysis.report import line_of, plain
 from linkwright.designs.design import Design
+from linkwright.designs.language.units import file_from_inside
 
 from .console import digits, heading, page, table_of
 
@@ -25,6 +27,9 @@ _STYLES = {Severity.ERROR: "bold red", Severity.WARNING: "bold yellow", Severity
 _MAX_ROWS = 40
 
 _MANIFEST = "manifest.json"
+
+#: A longer list of numbers is told by its range.
+_MAX_NUMBERS = 8
 
 #: What lies in a release's folder, and for whom.
 _PURPOSES = {
@@ -98,36 +103,57 @@ def _print_finding(console: Console, finding: Finding, design: Design) -> None:
     """Rule and subjects; the message; then one line each for numbers, pose, place and cure."""
     console.print(Text.assemble((finding.severity.value, _STYLES[finding.severity]), f" [{finding.rule}] ",
                                 (" / ".join(finding.subject), "bold")))
-    console.print(f"    {finding.message}")
+    _indented(console, finding.message)
     if finding.measured is not None:
         limit = "" if finding.limit is None else f", limit {digits(finding.limit)} {finding.unit}"
-        console.print(f"    measured {digits(finding.measured)} {finding.unit}{limit}")
+        _indented(console, f"measured {digits(finding.measured)} {finding.unit}{limit}")
     if finding.pose:
-        console.print(f"    at pose {', '.join(f'{key} = {digits(v)}' for key, v in finding.pose.items())}")
+        _indented(console, f"at pose {', '.join(f'{key} = {digits(v)}' for key, v in finding.pose.items())}")
     if finding.location is not None:
-        console.print(f"    at point {', '.join(digits(v) for v in finding.location)} mm in the base")
+        _indented(console, f"at point {', '.join(digits(v) for v in finding.location)} mm in the base")
     if finding.key:
         line = line_of(design, finding.key)
         place = f" ({design.path}:{line})" if line is not None else f" ({design.path})" if design.path else ""
-        console.print(f"    governed by {finding.key}{place}")
+        _indented(console, f"governed by {finding.key}{place}")
     if finding.suggestion:
-        console.print(f"    to cure it: {finding.suggestion}")
+        _indented(console, f"to cure it: {finding.suggestion}")
+
+
+def _indented(console: Console, text: str) -> None:
+    console.print(Padding(Text(text), (0, 0, 0, 4)))
 
 
 def _print_facts(console: Console, facts: Mapping[str, Any]) -> None:
     """Plain facts as a list; a list of mappings, or a mapping of them, as a table."""
     for name, value in facts.items():
-        rows = _as_rows(value)
+        rows = _as_limits(value) or _as_rows(value)
         if rows is None:
             console.print(f"{name}: {_shown(value)}")
             continue
         columns = list(dict.fromkeys(column for row in rows for column in row))
         cells = [[_shown(row.get(column, "")) for column in columns] for row in rows[:_MAX_ROWS]]
-        right = [i for i, c in enumerate(columns) if all(isinstance(row.get(c), int | float) for row in rows)]
+        right = [i for i, c in enumerate(columns) if all(_is_number(row.get(c)) for row in rows)]
         console.print(f"{name}:")
         console.print(table_of(columns, cells, right=right))
         if len(rows) > _MAX_ROWS:
             console.print(f"... and {len(rows) - _MAX_ROWS} more; --json shows all")
+
+
+def _as_limits(value: Any) -> Sequence[Mapping[str, Any]] | None:
+    """Measured joint limits beside the declared ones, angles in degrees; None for any other fact."""
+    if not isinstance(value, dict) or not value or not all(isinstance(v, dict) for v in value.values()):
+        return None
+    if not all({"lower", "upper", "declared_lower", "declared_upper", "unit"} <= set(v) for v in value.values()):
+        return None
+    rows = []
+    for joint, row in value.items():
+        unit = "deg" if row["unit"] == "rad" else row["unit"]
+        ends = {end: file_from_inside(row[end], unit) for end in ("lower", "declared_lower", "declared_upper", "upper")}
+        stops = [row.get(f"stopped_{side}_by") for side in ("below", "above")]
+        stopped = "nothing" if row.get("unlimited") else "; ".join(dict.fromkeys(stop for stop in stops if stop))
+        rows.append({"joint": joint, **{end.replace("_", " "): f"{v:.2f}" for end, v in ends.items()}, "unit": unit,
+                     "stopped by": stopped})
+    return rows
 
 
 def _as_rows(value: Any) -> Sequence[Mapping[str, Any]] | None:
@@ -146,5 +172,14 @@ def _shown(value: Any) -> str:
     if isinstance(value, dict):
         return ", ".join(f"{k} {_shown(v)}" for k, v in value.items())
     if isinstance(value, list):
-        return ", ".join(_shown(v) for v in value)
+        if len(value) > _MAX_NUMBERS and all(isinstance(v, int | float) for v in value):
+            return f"{len(value)} numbers, {digits(min(value))} to {digits(max(value))}"
+        return ", ".join(_shown(v) for v in value) or "none"
     return str(value)
+
+
+def _is_number(value: Any) -> bool:
+    """A number, or a text that shows one."""
+    if isinstance(value, str):
+        return value.removeprefix("-").replace(".", "", 1).isdigit()
+    return isinstance(value, int | float)

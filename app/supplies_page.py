@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Sequence
 from importlib.resources import files
 
 Cell = float | str
@@ -10,6 +11,9 @@ Rows = list[dict[str, Cell]]
 
 #: A table with at most so many rows is printed on its side: a column per row.
 _FEW_ROWS = 4
+
+#: A table with more columns after the name is printed in several, each with the name in front.
+_FEW_COLUMNS = 7
 
 
 def read_supplies() -> dict[str, Rows]:
@@ -22,23 +26,36 @@ def read_supplies() -> dict[str, Rows]:
 
 def print_supplies(tables: dict[str, Rows]) -> None:
     """All tables; sources are left to `--json`."""
-    from .console import digits, heading, page, table_of
+    from .console import heading, page, table_of
 
     console = page()
     for name, rows in tables.items():
         heading(console, name)
         columns = [column for column in rows[0] if column != "source"]
-        cells = [[c if isinstance(c, str) else digits(c) for c in map(row.__getitem__, columns)] for row in rows]
-        # Blanks let a long column name fold at a word.
-        titles = [column.replace("_", " ") for column in columns]
         if len(rows) <= _FEW_ROWS:
-            titles, *cells = [list(line) for line in zip(titles, *cells, strict=True)]
-        right = [i for i in range(1, len(titles)) if all(_is_number(line[i]) for line in cells)]
-        console.print(table_of(titles, cells, right=right))
+            lines = [[column.replace("_", " "), *(_shown(row[column]) for row in rows)] for column in columns]
+            console.print(table_of(lines[0], lines[1:], whole=(0,)))
+            continue
+        first, *others = columns
+        for some in _batched(others, _FEW_COLUMNS):
+            # Blanks let a long column name fold at a word.
+            titles = [column.replace("_", " ") for column in (first, *some)]
+            cells = [[_shown(row[column]) for column in (first, *some)] for row in rows]
+            right = [i for i in range(1, len(titles)) if all(_is_number(line[i]) for line in cells)]
+            console.print(table_of(titles, cells, right=right, whole=(0,)))
 
 
 def _cells(row: dict[str, str]) -> dict[str, Cell]:
     return {column: float(text) if _is_number(text) else text for column, text in row.items()}
+
+
+def _batched(words: Sequence[str], n: int) -> list[Sequence[str]]:
+    """The words in groups of n; the last may be shorter."""
+    return [words[i : i + n] for i in range(0, len(words), n)]
+
+
+def _shown(cell: Cell) -> str:
+    return cell if isinstance(cell, str) else f"{cell:g}"
 
 
 def _is_number(text: str) -> bool:

@@ -41,8 +41,15 @@ class Entry:
 
 
 _ENTRIES = {
-    "hit": Entry(name="hit", title=hit.Hit.title, source=hit.Hit.source, sections=hit.SECTIONS, task=hit.TASK,
-                 workspace=HIT_WORKSPACE, build=hit.Hit),
+    "hit": Entry(
+        name="hit",
+        title=hit.Hit.title,
+        source=hit.Hit.source,
+        sections=hit.SECTIONS,
+        task=hit.TASK,
+        workspace=HIT_WORKSPACE,
+        build=hit.Hit,
+    ),
 }
 
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from .language.mechanism import Mechanism
-from .language.parameters import angle, count, fields_of, flag, length
+from .language.parameters import count, fields_of, flag, length
 from .language.units import file_from_inside
 
 
@@ -19,9 +19,12 @@ from .language.units import file_from_inside
 class Clearance:
     """What the checks ask of the solids."""
 
-    minimum: float = length(0.5, "least gap between any two bodies over the workspace, contacts of joints excepted",
-                            least=0.0)
-    mesh_deviation: float = length(0.02, "largest distance between a solid and the mesh that stands for it in the checks")
+    minimum: float = length(
+        0.5, "least gap between any two bodies over the workspace, contacts of joints excepted", least=0.0
+    )
+    mesh_deviation: float = length(
+        0.02, "largest distance between a solid and the mesh that stands for it in the checks"
+    )
     fit_share: float = length(0.002, "how far a measured running clearance may lie from the stated one")
 
 

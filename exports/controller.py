@@ -13,6 +13,8 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
+from pydantic import BaseModel, ConfigDict, ValidationError
+
 from linkwright.designs import catalogue
 from linkwright.designs.catalogue import Entry
 from linkwright.designs.design import Design
@@ -20,7 +22,6 @@ from linkwright.designs.language.errors import DesignFileError, ReleaseError
 from linkwright.designs.language.mechanism import Mechanism
 from linkwright.designs.language.parameters import fields_of
 from linkwright.designs.language.units import file_from_inside, inside_from_file
-from pydantic import BaseModel, ConfigDict, ValidationError
 
 FORMAT = "linkwright-kinematics"
 FORMAT_VERSION = 1

@@ -9,11 +9,12 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Literal
 
+from pydantic import BaseModel, ConfigDict, ValidationError
+
 from linkwright.analysis.findings import Report, Severity
 from linkwright.designs.language.errors import ReleaseError
 from linkwright.generator.assembly import Assembly
 from linkwright.generator.mass import compute_part_mass
-from pydantic import BaseModel, ConfigDict, ValidationError
 
 from .products import products_of
 

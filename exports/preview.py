@@ -10,12 +10,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+
 from linkwright.designs.language.errors import ReleaseError
 from linkwright.designs.language.materials import material
 from linkwright.generator.assembly import Assembly
 from linkwright.generator.mesh import Mesh
 
-from .shade import shade
+from .shade import enlarged, shade
 
 SIZE = (1600, 1200)
 #: Drawn larger and averaged down: smoother than the driver's own anti-aliasing and the same on every driver.
@@ -27,7 +28,9 @@ _MARGIN = 1.06
 #: Edges between faces that meet at less than this are tangent; drawing them would clutter fillets.
 _EDGE_ANGLE = np.deg2rad(20.0)
 #: How far surfaces look around themselves for what takes their light, as a share of the assembly's size.
-_SHADE_SHARE = 0.05
+_SHADE_SHARE = 0.06
+#: Shade is soft: it is computed for blocks of so many pixels each way.
+_SHADE_PIXELS = 2
 _EDGE_COLOUR = (0.10, 0.11, 0.13)
 #: Paper and floor alike, and the floor takes no light: it is seen only where the assembly shades it.
 _PAPER = (0.955, 0.963, 0.973)
@@ -61,6 +64,8 @@ def write_preview(assembly: Assembly, Ts_base_body: np.ndarray, path: Path) -> N
 
 def render(assembly: Assembly, Ts_base_body: np.ndarray) -> np.ndarray:
     """The picture as pixels, shape (height, width, 3) uint8, first row on top."""
+    # Loaded first, or the objects below come up without a way to draw themselves.
+    import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
     from vtkmodules.vtkRenderingCore import vtkRenderer
 
     renderer = vtkRenderer()
@@ -84,7 +89,8 @@ def render(assembly: Assembly, Ts_base_body: np.ndarray) -> np.ndarray:
     _aim(renderer, cloud)
     pixels, depths = _grab(renderer)
     half_width = np.tan(np.deg2rad(_VIEW_ANGLE_DEG) / 2.0) * SIZE[0] / SIZE[1]
-    light = shade(depths[::_SUPERSAMPLING, ::_SUPERSAMPLING], half_width, _SHADE_SHARE * size)
+    coarse = _SUPERSAMPLING * _SHADE_PIXELS
+    light = enlarged(shade(depths[::coarse, ::coarse], half_width, _SHADE_SHARE * size), _SHADE_PIXELS)
     return np.round(_averaged(pixels, _SUPERSAMPLING) * light[..., None]).astype(np.uint8)
 
 
@@ -218,7 +224,7 @@ def _light(renderer: Any) -> None:
     from vtkmodules.vtkRenderingCore import vtkLight
 
     renderer.AutomaticLightCreationOff()
-    for position, strength in (((-0.7, 1.0, 0.9), 0.65), ((1.0, 0.1, 0.8), 0.45), ((-0.3, -0.1, 1.0), 0.25)):
+    for position, strength in (((-0.7, 1.0, 0.9), 0.75), ((1.0, 0.1, 0.8), 0.5), ((-0.3, -0.1, 1.0), 0.25)):
         light = vtkLight()
         light.SetLightTypeToCameraLight()
         light.SetPosition(position)
@@ -247,7 +253,8 @@ def _aim(renderer: Any, cloud: np.ndarray) -> None:
     camera.SetPosition(*(middle + distance * eye))
     camera.SetViewUp(0.0, 0.0, 1.0)
     camera.SetViewAngle(_VIEW_ANGLE_DEG)
-    renderer.ResetCameraClippingRange()
+    # The floor reaches farther than the points; what lies beyond twice the distance is paper anyway.
+    camera.SetClippingRange(0.5 * (distance - np.max(near - middle @ eye)), 2.0 * distance)
 
 
 def _grab(renderer: Any) -> tuple[np.ndarray, np.ndarray]:
@@ -263,7 +270,7 @@ def _grab(renderer: Any) -> tuple[np.ndarray, np.ndarray]:
     window.AddRenderer(renderer)
     window.Render()
     colours, steps = vtkUnsignedCharArray(), vtkFloatArray()
-    window.GetPixelData(0, 0, width - 1, height - 1, 0, colours)
+    window.GetPixelData(0, 0, width - 1, height - 1, 0, colours, 0)
     window.GetZbufferData(0, 0, width - 1, height - 1, steps)
     near, far = renderer.GetActiveCamera().GetClippingRange()
     window.Finalize()
@@ -301,8 +308,8 @@ def check_egl(library: str = "libEGL.so.1") -> None:
 
 
 def _averaged(pixels: np.ndarray, n: int) -> np.ndarray:
-    height, width, _ = pixels.shape
-    return pixels.reshape(height // n, n, width // n, n, 3).mean(axis=(1, 3), dtype=np.float32)
+    total = sum(pixels[i::n, j::n].astype(np.uint16) for i in range(n) for j in range(n))
+    return np.asarray(total, dtype=np.float32) / np.float32(n * n)
 
 
 def _write_png(pixels: np.ndarray, path: Path) -> None:

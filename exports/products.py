@@ -73,9 +73,16 @@ def _candidates(part: Part, uses: Sequence[Use]) -> Iterator[str]:
         yield slug(part.purchased)
         yield slug(f"{part.purchased}_{part.name}")
         return
-    shared = _shared_words([use.kind for use in uses])
-    yield slug(part.name if not shared or part.name == shared else f"{shared}_{part.name}")
-    yield slug(f"{uses[0].kind}_{part.name}")
+    kind, own = _shared_words([use.kind for use in uses]), _shared_words([use.part for use in uses])
+    yield slug(_joined(kind, own or part.name))
+    yield slug(_joined(uses[0].kind, part.name))
+
+
+def _joined(kind: str, part: str) -> str:
+    """Kind and part in one name, words that end the one and begin the other said once: upper_bar, bar -> upper_bar."""
+    first, second = kind.split("_") if kind else [], part.split("_")
+    overlap = next(n for n in range(min(len(first), len(second)), -1, -1) if first[len(first) - n :] == second[:n])
+    return "_".join([*first, *second[overlap:]])
 
 
 def _distinct(candidates: Sequence[Sequence[str]]) -> list[str]:
@@ -99,13 +106,10 @@ def _distinct(candidates: Sequence[Sequence[str]]) -> list[str]:
     return names
 
 
-def _shared_words(kinds: Sequence[str]) -> str:
-    """The leading words that all kinds have in common: lower_left, lower_right -> lower."""
-    words = [kind.split("_") for kind in kinds]
-    n = 0
-    while all(len(w) > n for w in words) and len({w[n] for w in words}) == 1:
-        n += 1
-    return "_".join(words[0][:n])
+def _shared_words(names: Sequence[str]) -> str:
+    """The words that all names have at one place: lower_left, lower_right -> lower; leg_1_pin, leg_2_pin -> leg_pin."""
+    places = zip(*(name.split("_") for name in names), strict=False)
+    return "_".join(words[0] for words in places if len(set(words)) == 1)
 
 
 def slug(text: str) -> str:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+
 from linkwright.analysis.feasibility import check_design
 from linkwright.analysis.findings import CheckResult, Finding, Report, Severity
 from linkwright.analysis.report import findings_json

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
 from linkwright.designs.language.errors import ReleaseError
 
 if TYPE_CHECKING:

@@ -1,6 +1,6 @@
 """Soft shade where surfaces close in on each other, computed from the picture's depths: how a drawing gets its weight.
 
-The graphics library has such a pass too; measured, it now and then leaves the shade out, and takes five times as long.
+The graphics library has such a pass too; without a graphics card it took 3 to 6 s for a picture where this takes 0.5 s.
 """
 
 from __future__ import annotations
@@ -9,11 +9,11 @@ import numpy as np
 
 #: Directions and distances (as shares of the radius) in which each pixel looks around itself. Each ring starts at
 #: another angle, so that the directions of one do not line up with the next into visible rays.
-_N_DIRECTIONS = 8
-_RINGS = (0.08, 0.2, 0.42, 0.75, 1.0)
+_N_DIRECTIONS = 10
+_RINGS = (0.06, 0.15, 0.3, 0.5, 0.75, 1.0)
 #: A neighbour must rise this much above a surface to shade it: keeps facets of a round face from shading each other.
 _BIAS = 0.06
-_STRENGTH = 1.15
+_STRENGTH = 2.6
 
 
 def shade(depths: np.ndarray, half_width: float, radius: float) -> np.ndarray:
@@ -26,19 +26,27 @@ def shade(depths: np.ndarray, half_width: float, radius: float) -> np.ndarray:
     """
     points = _points(depths, half_width)
     normals = _normals(points)
-    height, width = depths.shape
     is_there = np.isfinite(depths)
     middle = float(np.median(depths[is_there])) if np.any(is_there) else 1.0
-    reach = radius / (middle * half_width) * width / 2.0
+    reach = radius / (middle * half_width) * depths.shape[1] / 2.0
     closed = np.zeros(depths.shape, dtype=np.float32)
     for k, share in enumerate(_RINGS):
         for i in range(_N_DIRECTIONS):
             angle = 2.0 * np.pi * (i / _N_DIRECTIONS + 0.381966 * k)
             step = round(reach * share * np.sin(angle)), round(reach * share * np.cos(angle))
-            if step != (0, 0):
+            if step != (0, 0) and abs(step[0]) < depths.shape[0] and abs(step[1]) < depths.shape[1]:
                 closed += _occlusion(points, normals, step, radius)
-    open_share = 1.0 - _STRENGTH * closed / (len(_RINGS) * _N_DIRECTIONS)
-    return np.where(is_there, np.clip(open_share, 0.0, 1.0), 1.0).astype(np.float32)
+    light = np.exp(-_STRENGTH * closed / (len(_RINGS) * _N_DIRECTIONS))
+    return np.where(is_there, light, 1.0).astype(np.float32)
+
+
+def enlarged(light: np.ndarray, n: int) -> np.ndarray:
+    """The same over n times as many pixels each way, softened over one old pixel."""
+    for axis in (0, 1):
+        spread = np.repeat(light, n, axis=axis)
+        window = sum(np.roll(spread, k, axis=axis) for k in range(-(n // 2), n // 2 + 1))
+        light = np.asarray(window / np.float32(2 * (n // 2) + 1), dtype=np.float32)
+    return light
 
 
 def _points(depths: np.ndarray, half_width: float) -> np.ndarray:
@@ -68,9 +76,10 @@ def _occlusion(points: np.ndarray, normals: np.ndarray, step: tuple[int, int], r
     """How much of each pixel's sky the pixel a step (down, right) away covers, from 0 to 1."""
     closed = np.zeros(points.shape[1:], dtype=np.float32)
     here, there = _overlap(points.shape[1:], step)
-    apart = points[:, there[0], there[1]] - points[:, here[0], here[1]]
-    distance = np.sqrt(np.einsum("kij,kij->ij", apart, apart)) + np.float32(1e-9)
-    rise = np.einsum("kij,kij->ij", apart, normals[:, here[0], here[1]]) / distance
+    x, y, z = points[:, there[0], there[1]] - points[:, here[0], here[1]]
+    n_x, n_y, n_z = normals[:, here[0], here[1]]
+    distance = np.sqrt(x * x + y * y + z * z) + np.float32(1e-9)
+    rise = (x * n_x + y * n_y + z * n_z) / distance
     fade = np.clip(1.0 - distance / np.float32(1.6 * radius), 0.0, 1.0)
     closed[here[0], here[1]] = np.clip(rise - np.float32(_BIAS), 0.0, 1.0) * fade
     return closed

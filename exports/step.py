@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
 from linkwright.designs.language.errors import ReleaseError
 from linkwright.designs.language.materials import material
 from linkwright.generator.assembly import AssembledBody, Assembly

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import hashlib
 import re
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -17,16 +18,15 @@ from linkwright.designs.language.errors import ReleaseError
 
 #: A string (quotes are doubled inside it) or a reference; strings are matched so that a "#1" in a name is none.
 _TOKEN = re.compile(r"'(?:[^']|'')*'|#\d+")
+_BREAK = re.compile(r"'(?:[^']|'')*'|\s*\n\s*")
 _ENTITY = re.compile(r"#(\d+)\s*=\s*((?:'(?:[^']|'')*'|[^';])*);")
+_OCCURRENCE_START = "NEXT_ASSEMBLY_USAGE_OCCURRENCE("
 _OCCURRENCE = re.compile(r"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\()'(?:[^']|'')*'")
 _OCCURRENCE_NAME = re.compile(r"NEXT_ASSEMBLY_USAGE_OCCURRENCE\('','((?:[^']|'')*)'")
 _SCHEMA = re.compile(r"FILE_SCHEMA\s*\(.*?\)\s*\)\s*;", re.DOTALL)
 
 #: A release has no time of day; the standard wants one.
 _TIMESTAMP = "1970-01-01T00:00:00"
-
-#: Rounds of refinement by referrers. Two separate all colour blocks seen; more cost time and change nothing.
-_ROUNDS = 2
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,12 +64,13 @@ def canonical_step(text: str, header: StepHeader) -> str:
     n_occurrences = 0
     for entity in order:
         body = "".join(_renumbered(graph.pieces[entity], graph.children[entity], number))
-        if _OCCURRENCE.match(body):
+        if body.startswith(_OCCURRENCE_START):
             n_occurrences += 1
             body = _OCCURRENCE.sub(rf"\g<1>'{n_occurrences}'", body, count=1)
         lines.append(f"#{number[entity]}={body};\n")
     schema_text = re.sub(r"\s+", " ", schema.group(0))
-    return f"ISO-10303-21;\nHEADER;\n{header.text(schema_text)}ENDSEC;\nDATA;\n{''.join(lines)}ENDSEC;\nEND-ISO-10303-21;\n"
+    head = f"ISO-10303-21;\nHEADER;\n{header.text(schema_text)}ENDSEC;\n"
+    return f"{head}DATA;\n{''.join(lines)}ENDSEC;\nEND-ISO-10303-21;\n"
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +86,8 @@ class _Graph:
         index = {number: i for i, (number, _) in enumerate(found)}
         pieces, children = [], []
         for number, body in found:
-            body = _OCCURRENCE.sub(r"\g<1>''", body)
+            if body.startswith(_OCCURRENCE_START):
+                body = _OCCURRENCE.sub(r"\g<1>''", body)
             own: list[str] = []
             refs: list[int] = []
             last = 0
@@ -104,13 +106,33 @@ class _Graph:
         return cls(pieces, children)
 
     def canonical_order(self, name: str) -> list[int]:
-        """All entities, children first, roots in the order of their hashes."""
+        """All entities, children first, roots in the order of names and hashes."""
         upward = self._children_first(name)
+        roots = self._roots()
         labels = [hashlib.blake2b("\0".join(own).encode(), digest_size=16).digest() for own in self.pieces]
-        for _ in range(_ROUNDS):
+        labels = self._refined(labels, upward)
+        while (tied := _first_tie([labels[root] for root in roots])) is not None:
+            # Roots that look the same from everywhere: any of them may come first, but then the others look different.
+            labels[roots[tied]] = hashlib.blake2b(labels[roots[tied]] + b"first", digest_size=16).digest()
+            labels = self._refined(labels, upward)
+        order: list[int] = []
+        state = bytearray(len(labels))
+        for root in sorted(roots, key=lambda i: (self._occurrence_name(i), labels[i])):
+            self._visit(root, state, order, name)
+        return order
+
+    def _roots(self) -> list[int]:
+        referred = {child for refs in self.children for child in refs}
+        return [i for i in range(len(self.children)) if i not in referred]
+
+    def _refined(self, labels: list[bytes], upward: Sequence[int]) -> list[bytes]:
+        """Labels refined until no two entities that differ in what is around them share one."""
+        n_classes = 0
+        while True:
             labels = self._refined_by_referrers(self._refined_by_children(labels, upward), upward)
-        labels = self._refined_by_children(labels, upward)
-        return self._emitted(labels)
+            if len(set(labels)) == n_classes:
+                return labels
+            n_classes = len(set(labels))
 
     def _refined_by_children(self, labels: Sequence[bytes], upward: Sequence[int]) -> list[bytes]:
         out = [b""] * len(labels)
@@ -153,29 +175,6 @@ class _Graph:
                 state[child] = 1
                 stack.append((child, iter(self.children[child])))
 
-    def _emitted(self, labels: Sequence[bytes]) -> list[int]:
-        referred = bytearray(len(labels))
-        for refs in self.children:
-            for child in refs:
-                referred[child] = 1
-        roots = sorted(
-            (i for i in range(len(labels)) if not referred[i]), key=lambda i: (self._occurrence_name(i), labels[i])
-        )
-        state = bytearray(len(labels))
-        order: list[int] = []
-        number: dict[int, int] = {}
-        while roots:
-            tied = [r for r in roots if labels[r] == labels[roots[0]]]
-            roots = roots[len(tied) :]
-            # Roots that say the same still hang on different things; what was written before tells them apart.
-            while tied:
-                first = min(tied, key=lambda r: self._anchors(r, number)) if len(tied) > 1 else tied[0]
-                tied.remove(first)
-                begun = len(order)
-                self._visit(first, state, order, "canonical order")
-                number.update({entity: begun + k for k, entity in enumerate(order[begun:])})
-        return order
-
     def _occurrence_name(self, root: int) -> list[tuple[int, str]]:
         """Name of the assembly occurrence that a root places, so that trees show leg_1, leg_2, leg_10; else empty."""
         near = [root]
@@ -187,21 +186,12 @@ class _Graph:
                 return [(int(w) if w.isdigit() else -1, w) for w in re.split(r"(\d+)", match.group(1))]
         return []
 
-    def _anchors(self, root: int, number: dict[int, int]) -> list[int]:
-        """Numbers of the entities below `root` that were written already, in the order of the references."""
-        seen: set[int] = set()
-        found: list[int] = []
-        stack = [root]
-        while stack:
-            entity = stack.pop()
-            if entity in seen:
-                continue
-            seen.add(entity)
-            if entity in number:
-                found.append(number[entity])
-            else:
-                stack.extend(reversed(self.children[entity]))
-        return found or [len(number)]
+
+def _first_tie(labels: Sequence[bytes]) -> int | None:
+    """Index of a root with the smallest label that is not its own; None if all differ."""
+    count = Counter(labels)
+    tied = min((label for label in labels if count[label] > 1), default=None)
+    return None if tied is None else labels.index(tied)
 
 
 def _renumbered(pieces: Sequence[str], children: Sequence[int], number: dict[int, int]) -> Iterator[str]:
@@ -212,8 +202,10 @@ def _renumbered(pieces: Sequence[str], children: Sequence[int], number: dict[int
 
 
 def _one_line(body: str) -> str:
-    """Line breaks are layout outside strings, and the writer puts none into strings."""
-    return re.sub(r"\s*\n\s*", "", body).strip()
+    """Line breaks taken out: outside strings with the blanks around them, inside strings the break alone."""
+    if "\n" not in body:
+        return body
+    return _BREAK.sub(lambda m: m.group(0).replace("\n", "") if m.group(0)[0] == "'" else "", body)
 
 
 def _quoted(text: str) -> str:

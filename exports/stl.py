@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+
 from linkwright.designs.language.errors import ReleaseError
 from linkwright.generator.mesh import Mesh
 
@@ -51,7 +52,7 @@ def rounded_mesh(vertices: np.ndarray, triangles: np.ndarray, name: str) -> tupl
     corners came to lie on one line are turned away by swapping their long edge.
 
     Raises:
-        ReleaseError: the mesh does not close afterwards.
+        ReleaseError: the mesh does not close afterwards, or lies on itself.
     """
     # Adding zero turns -0.0 into 0.0: the two are equal and must not count as different bytes.
     rounded = np.asarray(vertices, dtype=np.float32) + np.float32(0.0)
@@ -59,6 +60,8 @@ def rounded_mesh(vertices: np.ndarray, triangles: np.ndarray, name: str) -> tupl
     faces = inverse.reshape(-1)[np.asarray(triangles, dtype=np.int64)]
     distinct = (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])
     faces = _without_slivers(points.astype(np.float64), faces[distinct])
+    if len(np.unique(np.sort(faces, axis=1), axis=0)) != len(faces):
+        raise ReleaseError(f"{name}: it is so thin that 32-bit floats fold its mesh onto itself; nothing prints it")
     if not is_closed(faces):
         raise ReleaseError(f"{name}: its mesh does not close in 32-bit floats; choose another mesh_deviation")
     return points, faces

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+
 from linkwright.analysis.findings import CheckResult, Finding, Severity
 from linkwright.designs import catalogue
 from linkwright.designs.catalogue import Entry
 from linkwright.designs.design import Design
-from linkwright.designs.language.errors import LinkwrightError
+from linkwright.designs.language.errors import LinkwrightError, VacuousCheckError
 from linkwright.generator.assembly import Assembly
 
 from .controller import declared_numbers, home_numbers, mechanism_from_config, mechanism_numbers, read_config
@@ -37,7 +38,7 @@ class Worst:
 
     def or_(self, value: float, subject: str) -> Worst:
         """The larger of the two."""
-        return Worst(value=value, subject=subject) if value > self.value else self
+        return Worst(value=float(value), subject=subject) if value > self.value else self
 
 
 def check_assembly_step(path: Path, assembly: Assembly, Ts_base_body: np.ndarray) -> tuple[CheckResult, RereadAssembly]:
@@ -88,7 +89,12 @@ def check_assembly_step(path: Path, assembly: Assembly, Ts_base_body: np.ndarray
 
 
 def check_part_steps(paths: Mapping[Path, Product]) -> CheckResult:
-    """Compare written parts with their solids: one solid each, of the same volume."""
+    """Compare written parts with their solids: one solid each, of the same volume.
+
+    Raises:
+        VacuousCheckError: there are no files.
+    """
+    _refuse_none(paths, "STEP files of made parts")
     findings: list[Finding] = []
     volume = Worst()
     for path, product in paths.items():
@@ -98,7 +104,7 @@ def check_part_steps(paths: Mapping[Path, Product]) -> CheckResult:
             findings.append(
                 _error("step-reread", path, (product.name,), f"{product.name} is {n_solids} solids, not one")
             )
-    findings += _beyond("step-reread", path, "volume", volume, VOLUME_SHARE, "") if paths else []
+    findings += _beyond("step-reread", path, "volume", volume, VOLUME_SHARE, "")
     return CheckResult(
         check="part-step-reread",
         looked_at={"parts": len(paths)},
@@ -113,7 +119,11 @@ def check_stls(paths: Mapping[Path, Product], deviation: float) -> CheckResult:
     Args:
         paths: written file -> the part that it holds.
         deviation: largest distance between mesh and solid that was asked for [mm].
+
+    Raises:
+        VacuousCheckError: there are no files.
     """
+    _refuse_none(paths, "STL files")
     import trimesh
 
     findings: list[Finding] = []
@@ -126,6 +136,9 @@ def check_stls(paths: Mapping[Path, Product], deviation: float) -> CheckResult:
         except (ValueError, IndexError, OSError) as error:
             findings.append(_error("stl-reread", path, subject, f"trimesh cannot read it: {error}"))
             continue
+        if len(mesh.faces) == 0:
+            findings.append(_error("stl-reread", path, subject, f"the mesh of {product.name} is empty"))
+            continue
         claims = {
             "closed": mesh.is_watertight,
             "oriented one way": mesh.is_winding_consistent,
@@ -137,6 +150,7 @@ def check_stls(paths: Mapping[Path, Product], deviation: float) -> CheckResult:
             findings.append(
                 _error("stl-reread", path, subject, f"the mesh of {product.name} is not {', not '.join(broken)}")
             )
+            continue
         volume = volume.or_(abs(mesh.volume - solid.volume) / solid.volume, product.name)
         # A mesh whose every point lies within the deviation encloses at most area times deviation more or less.
         limit = solid.area * deviation
@@ -226,6 +240,11 @@ def check_design_file(path: Path, design: Design, entry: Entry | None = None) ->
     except LinkwrightError as error:
         findings.append(_error("design-reread", path, (design.name,), f"it cannot be read back: {error}"))
     return CheckResult(check="design-reread", looked_at={"files": 1}, findings=tuple(findings))
+
+
+def _refuse_none(paths: Mapping[Path, Product], what: str) -> None:
+    if not paths:
+        raise VacuousCheckError(f"there are no {what} to read back: the design makes no part")
 
 
 def _named(

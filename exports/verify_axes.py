@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+
 from linkwright.analysis.findings import CheckResult, Finding, Severity
+from linkwright.designs.language.errors import VacuousCheckError
 from linkwright.designs.language.joints import Joint, JointKind
 from linkwright.designs.language.mechanism import Mechanism
 
@@ -50,7 +52,12 @@ def check_axes(bodies: Mapping[str, RecoveredBody], mechanism: Mechanism, config
     Returns:
         Result "config-axes". A joint of which a body has no face nearby, and a face nearby that is not on the joint,
         are errors.
+
+    Raises:
+        VacuousCheckError: the mechanism has no joints.
     """
+    if not mechanism.joints:
+        raise VacuousCheckError(f"{mechanism.name} has no joints whose axes could be found")
     Ts_base_body = mechanism.place_bodies(np.asarray(mechanism.home, dtype=float)[None])[0]
     index = {body.name: i for i, body in enumerate(mechanism.bodies)}
     findings: list[Finding] = []
@@ -123,8 +130,8 @@ def _judged(joint: Joint, body: str, line: _Line, near: list[_Measure], config: 
             measured=worst.distance,
             limit=DISTANCE_MM,
             unit="mm",
-            message=f"{joint.name}: a {wanted} face of {body}/"
-            f"{worst.part} lies {worst.distance:.3g} mm from where {config.name} puts the joint, allowed is {DISTANCE_MM:g}",
+            message=f"{joint.name}: a {wanted} face of {body}/{worst.part} lies {worst.distance:.3g} mm from where"
+            f" {config.name} puts the joint, allowed is {DISTANCE_MM:g}",
         )
     worst = max(near, key=lambda m: m.direction)
     if worst.direction > DIRECTION_RAD:

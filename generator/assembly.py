@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+
 from linkwright.designs.design import Design
 from linkwright.designs.language.bodies import Body, Part
 from linkwright.designs.language.errors import BuildError
@@ -144,7 +145,7 @@ def _assemble(
             check_physical(mass, where)
         parts.append(placed)
         masses.append(move_mass(mass, placed.T_body_part))
-    whole = compose_masses(masses)
+    whole = compose_masses(masses, f"{design.name}: {body.kind}")
     check_physical(whole, f"{design.name}: {body.kind}")
     return tuple(parts), whole
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
+
 from linkwright.designs.language.bodies import Part
 from linkwright.designs.language.errors import BuildError
 from linkwright.designs.language.materials import material
@@ -13,6 +14,9 @@ from linkwright.designs.language.materials import material
 from .solids import Solid
 
 Array = np.ndarray
+
+#: A smallest moment of this share of the largest is the rounding of a zero.
+_NO_MOMENT = 1e-12
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,10 +59,16 @@ def move_mass(properties: MassProperties, T_ab: Array) -> MassProperties:
     )
 
 
-def compose_masses(several: Iterable[MassProperties]) -> MassProperties:
-    """Of all together; each about its own centre in one common frame (parallel axes)."""
+def compose_masses(several: Iterable[MassProperties], where: str) -> MassProperties:
+    """Of all together; each about its own centre in one common frame (parallel axes).
+
+    Raises:
+        BuildError: nothing has mass, so that there is no centre.
+    """
     several = list(several)
     mass = sum(p.mass for p in several)
+    if not mass > 0.0:
+        raise BuildError(where, f"has a mass of {mass:g} kg; it must be positive")
     centre = sum((p.mass * p.centre for p in several), np.zeros(3)) / mass
     inertia = np.zeros((3, 3))
     for p in several:
@@ -76,7 +86,7 @@ def check_physical(properties: MassProperties, where: str) -> None:
     if not properties.mass > 0.0:
         raise BuildError(where, f"has a mass of {properties.mass:g} kg; it must be positive")
     moments = np.linalg.eigvalsh(properties.inertia)
-    if not moments[0] > 0.0:
+    if not moments[0] > _NO_MOMENT * moments[2]:
         raise BuildError(where, f"has a principal moment of inertia of {moments[0]:g} kg mm2; it must be positive")
     if moments[2] > (moments[0] + moments[1]) * (1.0 + 1e-9):
         raise BuildError(

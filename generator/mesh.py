@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+
 from linkwright.designs.language.errors import BuildError
 
 Array = np.ndarray
@@ -135,7 +136,7 @@ def check_closed(mesh: Mesh, where: str) -> None:
     n = len(mesh.vertices)
     forth, times = np.unique(ends[:, 0] * n + ends[:, 1], return_counts=True)
     back = np.unique(ends[:, 1] * n + ends[:, 0])
-    open_edges = len(np.setxor1d(forth, back))
+    open_edges = len(np.setdiff1d(forth, back))
     doubled = int(np.sum(times > 1))
     if open_edges or doubled or not len(t):
         raise BuildError(

@@ -8,6 +8,7 @@ from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
 from linkwright.designs.language.errors import BuildError
 from linkwright.designs.language.features import Feature, Turned
 
@@ -89,29 +90,34 @@ def build_solid(feature: Feature, deviation: float, *, where: str, store: Store 
     key = content_key(feature, deviation)
     if store is not None and (found := store.load(key)) is not None:
         return found
-    solid = _measure(key, _build_shape(feature, where), deviation, where)
+    try:
+        solid = _measure(key, _build_shape(feature, where), deviation, where)
+    except Exception as error:
+        # The kernel's exceptions have no base class of their own; all others pass.
+        if type(error).__module__.split(".")[0] != "OCP":
+            raise
+        raise BuildError(where, f"the CAD kernel gave up: {type(error).__name__} {error}") from error
     if store is not None:
         store.save(solid)
     return solid
 
 
 def _build_shape(feature: Feature, where: str) -> Any:
-    from OCP.Standard import Standard_Failure
-
     from .parts.booleans import cut, sole_solid, unify
+    from .parts.enclosure import refuse_open_bores
     from .parts.milled import build_milled
     from .parts.turned import build_turned
 
-    try:
-        blank = build_turned(feature, where) if isinstance(feature, Turned) else build_milled(feature, where)
-        whole = sole_solid(
-            unify(blank.shape), blank.volume, "its slabs" if not isinstance(feature, Turned) else "its profile", where
-        )
-        if not blank.tools:
-            return whole
-        return sole_solid(unify(cut(whole, blank.tools, where)), blank.cut_volume, "its holes and windows", where)
-    except Standard_Failure as error:
-        raise BuildError(where, f"the CAD kernel gave up: {type(error).__name__} {error}") from error
+    if isinstance(feature, Turned):
+        blank, made_of = build_turned(feature, where), "its profile"
+    else:
+        blank, made_of = build_milled(feature, where), "its slabs"
+    whole = sole_solid(unify(blank.shape), blank.volume, made_of, where)
+    if not blank.tools:
+        return whole
+    finished = cut(whole, blank.tools, where)
+    refuse_open_bores(whole, blank.tools, where)
+    return sole_solid(unify(finished), blank.cut_volume, "its holes and windows", where)
 
 
 def _measure(key: str, built: Any, deviation: float, where: str) -> Solid:

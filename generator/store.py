@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+
 from linkwright.designs.language.features import Feature
 
 from .mesh import Mesh

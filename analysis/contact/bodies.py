@@ -86,7 +86,7 @@ def build_contact_body(body: AssembledBody) -> ContactBody:
 
 
 def scan_pair(
-    a: ContactBody, b: ContactBody, Ts_ab: Array, *, need: float, exempt_a: Array | None = None,
+    a: ContactBody, b: ContactBody, Ts_ab: Array, *, need: float, share: float = 0.0, exempt_a: Array | None = None,
     exempt_b: Array | None = None,
 ) -> PairScan:
     """How near two bodies come over n poses, and whether one holds a part of the other.
@@ -94,10 +94,11 @@ def scan_pair(
     Args:
         a, b: the bodies.
         Ts_ab: poses of B seen from A, shape (n, 4, 4) [mm].
-        need: distances below this are wanted at every pose [mm].
+        need: distances below this are wanted at every pose, exactly [mm].
+        share: by which a least distance above `need` may exceed the exact one.
         exempt_a, exempt_b: see `distance.compute_distance`.
     """
-    scan = scan_poses(a.tree, b.tree, Ts_ab, need=need, exempt_a=exempt_a, exempt_b=exempt_b)
+    scan = scan_poses(a.tree, b.tree, Ts_ab, need=need, share=share, exempt_a=exempt_a, exempt_b=exempt_b)
     swallowed_a, swallowed_b = np.full(len(Ts_ab), -1), np.full(len(Ts_ab), -1)
     apart = np.linalg.norm(Ts_ab[:, :3, :3] @ b.tree.centre + Ts_ab[:, :3, 3] - a.tree.centre, axis=1)
     open_ = np.flatnonzero((apart < a.tree.radius + b.tree.radius) & (scan.values > TOUCH))

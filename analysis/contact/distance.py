@@ -127,6 +127,14 @@ def move(T: Array, B: Array, j: int, out: Array, row: int) -> None:
 
 
 @kernel
+def _enough(best: float, exact_below: float, share: float) -> float:
+    """The bound from which on a pair of nodes is not opened."""
+    if best <= exact_below:
+        return best - TOLERANCE
+    return max(exact_below, best * (1.0 - share)) - TOLERANCE
+
+
+@kernel
 def _leaves(
     a: Arrays, bits_a: Array, i: int, b: Arrays, bits_b: Array, j: int, T: Array, best: float,
     witness: Array, points: Array, moved: Array, s: Array,
@@ -149,34 +157,36 @@ def _leaves(
 @kernel
 def _nearest(
     a: Arrays, nodes_a: Array, bits_a: Array, b: Arrays, nodes_b: Array, bits_b: Array, T: Array, best: float,
-    witness: Array, points: Array, stack: Array, bounds: Array, moved: Array, s: Array,
+    exact_below: float, share: float, witness: Array, points: Array, stack: Array, bounds: Array, moved: Array, s: Array,
 ) -> float:
     """The least of `best` and the distance of two trees at pose T; see the module's docstring."""
-    if bound(a.nodes, 0, b.nodes, 0, T, best) >= best - TOLERANCE or nodes_a[0] & nodes_b[0]:
+    enough = _enough(best, exact_below, share)
+    if nodes_a[0] & nodes_b[0] or bound(a.nodes, 0, b.nodes, 0, T, best) >= enough:
         return best
     stack[0, 0], stack[0, 1], bounds[0] = 0, 0, 0.0
     top = 1
     while top > 0:
         top -= 1
-        if bounds[top] >= best - TOLERANCE:
+        if bounds[top] >= enough:
             continue
         i, j = stack[top, 0], stack[top, 1]
         right_a, right_b = a.links[i, 0], b.links[j, 0]
         if right_a == 0 and right_b == 0:
             best = _leaves(a, bits_a, i, b, bits_b, j, T, best, witness, points, moved, s)
+            enough = _enough(best, exact_below, share)
             continue
         if right_b == 0 or (right_a != 0 and a.nodes[i, 3] > b.nodes[j, 3]):
             i1, i2, j1, j2 = i + 1, right_a, j, j
         else:
             i1, i2, j1, j2 = i, i, j + 1, right_b
-        d1 = best if nodes_a[i1] & nodes_b[j1] else bound(a.nodes, i1, b.nodes, j1, T, best)
-        d2 = best if nodes_a[i2] & nodes_b[j2] else bound(a.nodes, i2, b.nodes, j2, T, best)
+        d1 = enough if nodes_a[i1] & nodes_b[j1] else bound(a.nodes, i1, b.nodes, j1, T, enough)
+        d2 = enough if nodes_a[i2] & nodes_b[j2] else bound(a.nodes, i2, b.nodes, j2, T, enough)
         if d1 < d2:
             i1, i2, j1, j2, d1, d2 = i2, i1, j2, j1, d2, d1
-        if d1 < best - TOLERANCE:
+        if d1 < enough:
             stack[top, 0], stack[top, 1], bounds[top] = i1, j1, d1
             top += 1
-        if d2 < best - TOLERANCE:
+        if d2 < enough:
             stack[top, 0], stack[top, 1], bounds[top] = i2, j2, d2
             top += 1
     return best
@@ -185,7 +195,7 @@ def _nearest(
 @kernel
 def _scan(
     a: Arrays, nodes_a: Array, bits_a: Array, b: Arrays, nodes_b: Array, bits_b: Array, Ts: Array, order: Array,
-    need: float, best: float, values: Array, witness: Array, points: Array,
+    need: float, best: float, share: float, values: Array, witness: Array, points: Array,
 ) -> tuple[float, int]:
     """Visits poses in an order; writes `values`; returns the least distance and its pose (or the first best, -1)."""
     stack, bounds = np.empty((512, 2), np.int32), np.empty(512)
@@ -201,7 +211,7 @@ def _scan(
             d2 = triangle_distance2(a.pieces, witness[0], moved, 0, cutoff * cutoff, here, s)
             if d2 < cutoff * cutoff:
                 d, warm = np.sqrt(d2), True
-        e = _nearest(a, nodes_a, bits_a, b, nodes_b, bits_b, T, d, found, here, stack, bounds, moved, s)
+        e = _nearest(a, nodes_a, bits_a, b, nodes_b, bits_b, T, d, need, share, found, here, stack, bounds, moved, s)
         values[k] = e
         if (warm or e < d) and e < best:
             best, pose = e, k
@@ -233,7 +243,7 @@ def compute_distance(
     Returns:
         The distance, within `TOLERANCE` of the exact one. Containment is not distance: see `containment`.
     """
-    scan = _run(tree_a, tree_b, np.asarray(T_ab, dtype=float)[None], 0.0, cutoff, exempt_a, exempt_b, warm)
+    scan = _run(tree_a, tree_b, np.asarray(T_ab, dtype=float)[None], 0.0, 0.0, cutoff, exempt_a, exempt_b, warm)
     return Distance(value=min(scan[0].value, cutoff), point_a=scan[0].point_a, point_b=scan[0].point_b, witness=scan[1])
 
 
@@ -243,6 +253,7 @@ def scan_poses(
     Ts_ab: Array,
     *,
     need: float = 0.0,
+    share: float = 0.0,
     cutoff: float = np.inf,
     exempt_a: Array | None = None,
     exempt_b: Array | None = None,
@@ -253,14 +264,16 @@ def scan_poses(
     Args:
         tree_a, tree_b, exempt_a, exempt_b, warm: see `compute_distance`.
         Ts_ab: poses of B seen from A, shape (n, 4, 4) [mm].
-        need: distances below this are wanted for every pose, not for the nearest alone [mm].
+        need: distances below this are wanted for every pose, not for the nearest alone, and exactly [mm].
+        share: a least distance that is not below `need` may exceed the exact one by this share. Bodies that stay far
+            apart with parallel faces cost a hundred times more to the last digit than to a thousandth.
         cutoff: least distances from here on are of no interest [mm].
     """
-    return _run(tree_a, tree_b, np.asarray(Ts_ab, dtype=float), need, cutoff, exempt_a, exempt_b, warm)[0]
+    return _run(tree_a, tree_b, np.asarray(Ts_ab, dtype=float), need, share, cutoff, exempt_a, exempt_b, warm)[0]
 
 
 def _run(
-    tree_a: ContactTree, tree_b: ContactTree, Ts: Array, need: float, cutoff: float,
+    tree_a: ContactTree, tree_b: ContactTree, Ts: Array, need: float, share: float, cutoff: float,
     exempt_a: Array | None, exempt_b: Array | None, warm: tuple[int, int] | None,
 ) -> tuple[PoseScan, tuple[int, int]]:
     nodes_a, bits_a = group_bits(tree_a, exempt_a)
@@ -271,7 +284,7 @@ def _run(
     values, points = np.empty(len(Ts)), np.empty(6)
     witness = np.array(warm if warm is not None else (-1, -1), dtype=np.int64)
     best, pose = _scan(tree_a.arrays, nodes_a, bits_a, tree_b.arrays, nodes_b, bits_b, np.ascontiguousarray(Ts),
-                       order, float(need), float(cutoff), values, witness, points)
+                       order, float(need), float(cutoff), float(share), values, witness, points)
     if pose < 0:
         return PoseScan(value=np.inf, pose=-1, point_a=None, point_b=None, values=values), (-1, -1)
     points.flags.writeable = False

@@ -81,7 +81,8 @@ def _print(design: Design) -> None:
     for table, own in groupby(keys, key=lambda key: key.table):
         heading(console, f"[{table}]")
         rows = [_row(key, resolved) for key in own]
-        console.print(table_of(("key (* changed)", "value", "unit", "symbol", "meaning"), rows, right=(1,), whole=(0, 1)))
+        columns = ("key (* changed)", "value", "unit", "symbol", "meaning")
+        console.print(table_of(columns, rows, right=(1,), whole=(0, 1)))
     heading(console, "derived numbers")
     derived = [(key, digits(file_from_inside(value, unit)), unit, meaning)
                for key, (value, unit, meaning) in mechanism.derived_numbers().items()]

@@ -12,10 +12,9 @@ from dataclasses import dataclass
 
 from ..language.bodies import Part, Placement
 from ..language.features import Hole, Turned, Vertex
-from ..language.hardware import SHIELD_RECESS
+from ..language.hardware import SHIELD_RECESS, spacer
 from ..language.hardware import clip as clip_feature
 from ..language.hardware import pin as pin_feature
-from ..language.hardware import spacer
 from ..language.supplies import Bearing, Clip
 
 #: Air between the inner ring and the shields, radially [mm]: about 0.15 in small bearings.
@@ -34,8 +33,13 @@ class Lay:
         """Placement of a part at (x, y, z) of the stack's frame; flipped, its z points down the axis."""
         e_z, e_x = self.z, self.x
         e_y = (e_z[1] * e_x[2] - e_z[2] * e_x[1], e_z[2] * e_x[0] - e_z[0] * e_x[2], e_z[0] * e_x[1] - e_z[1] * e_x[0])
-        origin = tuple(o + x * a + y * b + z * c for o, a, b, c in zip(self.origin, e_x, e_y, e_z, strict=True))
-        return Placement(origin=origin, z=tuple(-c for c in e_z) if flip else e_z, x=e_x)
+        o = self.origin
+        origin = (
+            o[0] + x * e_x[0] + y * e_y[0] + z * e_z[0],
+            o[1] + x * e_x[1] + y * e_y[1] + z * e_z[1],
+            o[2] + x * e_x[2] + y * e_y[2] + z * e_z[2],
+        )
+        return Placement(origin=origin, z=(-e_z[0], -e_z[1], -e_z[2]) if flip else e_z, x=e_x)
 
 
 #: For bodies whose z is the axis of their pins.
@@ -58,8 +62,16 @@ def inner_ring(row: Bearing) -> Turned:
 def outer_ring(row: Bearing) -> Turned:
     """The ring in the eye with its recessed shields, z from 0 to the bearing's width."""
     shield, land, outer, width = row.inner_land / 2.0 + RING_GAP, row.outer_land / 2.0, row.outer / 2.0, row.width
-    corners = ((land, 0.0), (outer, 0.0), (outer, width), (land, width), (land, width - SHIELD_RECESS),
-               (shield, width - SHIELD_RECESS), (shield, SHIELD_RECESS), (land, SHIELD_RECESS))
+    corners = (
+        (land, 0.0),
+        (outer, 0.0),
+        (outer, width),
+        (land, width),
+        (land, width - SHIELD_RECESS),
+        (shield, width - SHIELD_RECESS),
+        (shield, SHIELD_RECESS),
+        (land, SHIELD_RECESS),
+    )
     return Turned(profile=tuple(Vertex(r=r, z=z) for r, z in corners))
 
 
@@ -70,16 +82,31 @@ def sleeve(row: Bearing, length: float) -> Turned:
 
 def eye_hole(row: Bearing, x: float, y: float, run: Run, lip_bore: float, *, opens_up: bool) -> Hole:
     """The bore of an eye: a seat for the outer rings that opens on one side, a lip with its own bore on the other."""
-    return Hole(x=x, y=y, top=run.high if opens_up else run.low, upwards=not opens_up, diameter=lip_bore, depth=None,
-                head_diameter=row.outer, head_depth=run.high - run.low)
+    return Hole(
+        x=x,
+        y=y,
+        top=run.high if opens_up else run.low,
+        upwards=not opens_up,
+        diameter=lip_bore,
+        depth=None,
+        head_diameter=row.outer,
+        head_depth=run.high - run.low,
+    )
 
 
 def outer_rings(name: str, row: Bearing, x: float, y: float, run: Run, lay: Lay = ALONG_Z) -> tuple[Part, ...]:
     """The outer rings of an eye, pressed in side by side."""
     return tuple(
-        Part(name=f"{name}_outer_ring_{k + 1}", feature=outer_ring(row), at=lay.at(x, y, run.low + k * row.width),
-             material="steel_100cr6", purchased=row.name, mass=0.6 * row.mass, runs_in_joint=True,
-             fit="light press N7 in the eye, against its lip")
+        Part(
+            name=f"{name}_outer_ring_{k + 1}",
+            feature=outer_ring(row),
+            at=lay.at(x, y, run.low + k * row.width),
+            material="steel_100cr6",
+            purchased=row.name,
+            mass=0.6 * row.mass,
+            runs_in_joint=True,
+            fit="light press N7 in the eye, against its lip",
+        )
         for k in range(round((run.high - run.low) / row.width))
     )
 
@@ -87,9 +114,16 @@ def outer_rings(name: str, row: Bearing, x: float, y: float, run: Run, lay: Lay 
 def inner_rings(name: str, row: Bearing, x: float, y: float, run: Run, lay: Lay = ALONG_Z) -> tuple[Part, ...]:
     """The inner rings of a run, on the pin."""
     return tuple(
-        Part(name=f"{name}_inner_ring_{k + 1}", feature=inner_ring(row), at=lay.at(x, y, run.low + k * row.width),
-             material="steel_100cr6", purchased=f"{row.name} (inner ring)", mass=0.4 * row.mass, runs_in_joint=True,
-             fit="slide h6 on the pin, held by sleeve and clip")
+        Part(
+            name=f"{name}_inner_ring_{k + 1}",
+            feature=inner_ring(row),
+            at=lay.at(x, y, run.low + k * row.width),
+            material="steel_100cr6",
+            purchased=f"{row.name} (inner ring)",
+            mass=0.4 * row.mass,
+            runs_in_joint=True,
+            fit="slide h6 on the pin, held by sleeve and clip",
+        )
         for k in range(round((run.high - run.low) / row.width))
     )
 
@@ -117,21 +151,46 @@ def pinned(
     high = ups[-1].high + clip.groove_width + land if ups else fixed[1]
     grooves = [clip.groove(land)] if downs else []
     grooves += [clip.groove(ups[-1].high - low)] if ups else []
-    parts = [Part(name=f"{name}_pin", feature=pin_feature(row.bore, high - low, grooves=tuple(grooves)),
-                  at=lay.at(x, y, low), material=material, runs_in_joint=True, fit="press H7/p6 in its body")]
+    parts = [
+        Part(
+            name=f"{name}_pin",
+            feature=pin_feature(row.bore, high - low, grooves=tuple(grooves)),
+            at=lay.at(x, y, low),
+            material=material,
+            runs_in_joint=True,
+            fit="press H7/p6 in its body",
+        )
+    ]
     for side, runs in (("up", ups), ("down", downs)):
         edge = fixed[1] if side == "up" else fixed[0]
         for k, run in enumerate(runs):
             tag = f"{name}_{side}_{k + 1}"
             start, stop = (edge, run.low) if side == "up" else (run.high, edge)
             if stop - start > 1e-9:
-                parts.append(Part(name=f"{tag}_sleeve", feature=sleeve(row, stop - start),
-                                  at=lay.at(x, y, start), material=material, runs_in_joint=True, fit="slide on the pin"))
+                parts.append(
+                    Part(
+                        name=f"{tag}_sleeve",
+                        feature=sleeve(row, stop - start),
+                        at=lay.at(x, y, start),
+                        material=material,
+                        runs_in_joint=True,
+                        fit="slide on the pin",
+                    )
+                )
             parts.extend(inner_rings(tag, row, x, y, run, lay))
             edge = run.high if side == "up" else run.low
         if runs:
             at = runs[-1].high if side == "up" else runs[-1].low - clip.thickness
-            parts.append(Part(name=f"{name}_{side}_clip", feature=clip_feature(clip.name), at=lay.at(x, y, at),
-                              material="stainless_1_4301", purchased=clip.name, mass=clip.mass, runs_in_joint=True,
-                              fit="snaps into the pin's groove"))
+            parts.append(
+                Part(
+                    name=f"{name}_{side}_clip",
+                    feature=clip_feature(clip.name),
+                    at=lay.at(x, y, at),
+                    material="stainless_1_4301",
+                    purchased=clip.name,
+                    mass=clip.mass,
+                    runs_in_joint=True,
+                    fit="snaps into the pin's groove",
+                )
+            )
     return tuple(parts)

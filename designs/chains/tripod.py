@@ -99,7 +99,7 @@ def close_loops(
 
 
 def _solve3(A: np.ndarray, f: np.ndarray) -> np.ndarray:
-    """x with A x = f by cofactors; not finite where A is singular (batched 3x3, no exception)."""
+    """X with A x = f by cofactors; not finite where A is singular (batched 3x3, no exception)."""
     c0 = np.cross(A[:, 1], A[:, 2])
     c1 = np.cross(A[:, 2], A[:, 0])
     c2 = np.cross(A[:, 0], A[:, 1])
@@ -108,7 +108,7 @@ def _solve3(A: np.ndarray, f: np.ndarray) -> np.ndarray:
         return (c0 * f[:, :1] + c1 * f[:, 1:2] + c2 * f[:, 2:3]) / det[:, None]
 
 
-def _closure(alphas, y, rho, base_radius, plate_radius, e_y):  # noqa: ANN001, ANN202
+def _closure(alphas, y, rho, base_radius, plate_radius, e_y):
     F, dF = [], []
     for i, delta in enumerate(DELTAS):
         axes = leg_axes(alphas[:, i], delta)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from typing import Any
-
-from pydantic_core import ErrorDetails
+from typing import TYPE_CHECKING, Any
 
 from ..language.errors import DesignFileError
 from .keys import Key, did_you_mean, did_you_mean_key
+
+if TYPE_CHECKING:
+    from pydantic_core import ErrorDetails
 
 #: Stands where a file's name would stand when the command line gave the value.
 COMMAND_LINE = "--set"

@@ -9,20 +9,19 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pydantic import BaseModel, ValidationError
-
 from .. import catalogue
 from ..design import Allowed, Design, Workspace
 from ..language.errors import DesignFileError, ParameterError, UnknownNameError
 from ..language.mechanism import Mechanism
 from ..language.units import inside_from_file
 from .keys import COMMON, Key, did_you_mean, keys_of, replaced, workspace_leaf
-from .model import build_model
 from .overrides import Override, lay_over, parse_overrides
 from .positions import lines_of
 from .problems import Places, describe, raise_all
 
 if TYPE_CHECKING:
+    from pydantic import BaseModel
+
     from ..catalogue import Entry
 
 FindEntry = Callable[[str], "Entry"]
@@ -54,6 +53,8 @@ def load_design(design: str, overrides: Sequence[str] = (), *, find_entry: FindE
         known = ", ".join(error.known)
         raise DesignFileError(design, None, "design", None,
                               f"is neither a file nor a mechanism{hint}; mechanisms: {known}") from error
+    if not overrides:
+        return entry.default_design()
     return _resolve({"mechanism": entry.name}, parse_overrides(overrides), "", {}, find_entry)
 
 
@@ -148,6 +149,11 @@ def _plain_keys(table: Mapping[str, Any], prefix: str = "") -> set[str]:
 
 
 def _validated(entry: Entry, table: Mapping[str, Any], keys: Mapping[str, Key], places: Places) -> BaseModel:
+    # The model costs a quarter of a start-up; a catalogue design without overrides does not need it.
+    from pydantic import ValidationError
+
+    from .model import build_model
+
     try:
         return build_model(entry).model_validate(table)
     except ValidationError as error:

@@ -75,7 +75,7 @@ def _rows(keys: Sequence[Key], values: Sequence[Any]) -> Iterator[str]:
     column = max(len(pair) for pair in pairs) + 2
     shared = _shared(keys)
     for key, value, pair in zip(keys, values, pairs, strict=True):
-        first, *rest = textwrap.wrap(_note(key, value, shared), max(WIDTH - column - 2, 40), break_long_words=False, break_on_hyphens=False)
+        first, *rest = _wrapped(_note(key, value, shared), max(WIDTH - column - 2, 40))
         yield f"{pair:<{column}}# {first}"
         yield from (f"{'':<{column}}# {line}" for line in rest)
 
@@ -118,7 +118,12 @@ def _shared_choices(keys: Sequence[Key]) -> list[str]:
 
 
 def _comment(text: str) -> list[str]:
-    return textwrap.wrap(text, WIDTH, initial_indent="# ", subsequent_indent="# ", break_long_words=False, break_on_hyphens=False)
+    return [f"# {line}" for line in _wrapped(text, WIDTH - 2)]
+
+
+def _wrapped(text: str, width: int) -> list[str]:
+    """Lines of a text; names such as MR104ZZ or DIN6799-4 stay whole."""
+    return textwrap.wrap(text, width, break_long_words=False, break_on_hyphens=False)
 
 
 def _look_up(table: Mapping[str, Any], dotted: str) -> Any:

@@ -28,7 +28,12 @@ def build_bodies(sections: Mapping[str, Any]) -> tuple[Body, ...]:
         "inner_upper": shop.inner_upper(),
     }
     legs = [
-        Body(name=f"{leg}_{name}", kind="upper_bar" if name in ("upper_left", "upper_right") else name, group=leg, parts=parts)
+        Body(
+            name=f"{leg}_{name}",
+            kind="upper_bar" if name in ("upper_left", "upper_right") else name,
+            group=leg,
+            parts=parts,
+        )
         for leg in ("leg_1", "leg_2", "leg_3")
         for name, parts in kinds.items()
     ]

@@ -35,17 +35,45 @@ def _leg_joints(i: int, p: HitParameters, lim: HitLimits) -> tuple[Joint, ...]:
     theta_1, theta_2 = (lim.theta_1_min, lim.theta_1_max), (lim.theta_2_min, lim.theta_2_max)
     bend = (lim.elbow_min, lim.elbow_max)
 
-    def hinge(name: str, parent: str, child: str, at: Point, axis: Point, to: Point, span: tuple[float, float],
-              *, to_axis: Point = _Z, active: bool = False) -> Joint:
-        return Joint(name=f"{leg}_{name}", kind=JointKind.REVOLUTE, parent=parent if parent == "base" else f"{leg}_{parent}",
-                     child=f"{leg}_{child}", p_parent=at, axis_parent=axis, p_child=to, axis_child=to_axis,
-                     lower=span[0], upper=span[1], is_active=active)
+    def hinge(
+        name: str,
+        parent: str,
+        child: str,
+        at: Point,
+        axis: Point,
+        to: Point,
+        span: tuple[float, float],
+        *,
+        to_axis: Point = _Z,
+        active: bool = False,
+    ) -> Joint:
+        return Joint(
+            name=f"{leg}_{name}",
+            kind=JointKind.REVOLUTE,
+            parent=parent if parent == "base" else f"{leg}_{parent}",
+            child=f"{leg}_{child}",
+            p_parent=at,
+            axis_parent=axis,
+            p_child=to,
+            axis_child=to_axis,
+            lower=span[0],
+            upper=span[1],
+            is_active=active,
+        )
 
     return (
         hinge("theta_1", "frame", "lower_left", (0.0, -e, h), _X, _ORIGIN, theta_1, active=True),
         hinge("theta_2", "frame", "lower_right", (0.0, e, h), _X, _ORIGIN, theta_2, active=True),
-        hinge("pin", "base", "frame", (p.base_radius * c, p.base_radius * s, 0.0), (-s, c, 0.0), _ORIGIN,
-              (-lim.pin_max, lim.pin_max), to_axis=_Y),
+        hinge(
+            "pin",
+            "base",
+            "frame",
+            (p.base_radius * c, p.base_radius * s, 0.0),
+            (-s, c, 0.0),
+            _ORIGIN,
+            (-lim.pin_max, lim.pin_max),
+            to_axis=_Y,
+        ),
         hinge("elbow_left", "lower_left", "upper_left", (L2, 0.0, 0.0), _Z, _ORIGIN, (-bend[1], -bend[0])),
         hinge("elbow_right", "lower_right", "upper_right", (L2, 0.0, 0.0), _Z, _ORIGIN, bend),
         hinge("elbow_plate", "elbow_plate", "lower_left", _ORIGIN, _Z, (L2, 0.0, 0.0), theta_1),
@@ -55,14 +83,16 @@ def _leg_joints(i: int, p: HitParameters, lim: HitLimits) -> tuple[Joint, ...]:
         hinge("inner_upper_head", "top_bar", "inner_upper", (-e + v2[0], v2[1], 0.0), _Z, (L3, 0.0, 0.0), theta_2),
         hinge("top_left", "top_bar", "upper_left", (-e, 0.0, 0.0), _Z, (L3, 0.0, 0.0), theta_2),
         hinge("top_right", "top_bar", "upper_right", (e, 0.0, 0.0), _Z, (L3, 0.0, 0.0), theta_1),
-        Joint(name=f"{leg}_ball", kind=JointKind.SPHERICAL, parent="platform", child=f"{leg}_top_bar", p_parent=socket,
-              axis_parent=(0.0, 0.0, -1.0), p_child=(0.0, p.ball_height, 0.0), axis_child=(0.0, -1.0, 0.0),
-              lower=0.0, upper=lim.cone_max),
+        Joint(
+            name=f"{leg}_ball",
+            kind=JointKind.SPHERICAL,
+            parent="platform",
+            child=f"{leg}_top_bar",
+            p_parent=socket,
+            axis_parent=(0.0, 0.0, -1.0),
+            p_child=(0.0, p.ball_height, 0.0),
+            axis_child=(0.0, -1.0, 0.0),
+            lower=0.0,
+            upper=lim.cone_max,
+        ),
     )
-
-
-def joint_values(alpha, links, cone):  # noqa: ANN001, ANN201
-    """Values of one leg's joints in the order of `_leg_joints` from lean, link directions and cone angle [rad]."""
-    t1, t2, upper_left, upper_right = links
-    return (t1, t2, alpha, upper_left - t1, upper_right - t2, t1, t1, t1, upper_left, upper_left, upper_left,
-            upper_right, cone)

@@ -14,7 +14,9 @@ class HitParameters:
     """The kinematic dimensions (Zhang et al., Fig. 4; the paper prints no values)."""
 
     base_radius: float = length(
-        120.0, "centre of the base to the pins; below 105 neighbouring elbows collide, 120 leaves them 10 mm", symbol="R"
+        120.0,
+        "centre of the base to the pins; below 105 neighbouring elbows collide, 120 leaves them 10 mm",
+        symbol="R",
     )
     platform_radius: float = length(
         120.0, "centre of the platform to the balls; equal to base_radius gives the 60 degree symmetry", symbol="r"
@@ -25,14 +27,20 @@ class HitParameters:
     ball_height: float = length(30.0, "pins of the top bar to the ball's centre", symbol="L_1 (part)")
     lower_link_length: float = length(150.0, "motor pivot to elbow", symbol="L_2")
     upper_link_length: float = length(150.0, "elbow to top bar; equal to L_2 for a rhombus", symbol="L_3")
-    frame_width: float = length(50.0, "left to right motor pivot, and the same on the top bar; cancels in the kinematics",
-                                symbol="e")
+    frame_width: float = length(
+        50.0, "left to right motor pivot, and the same on the top bar; cancels in the kinematics", symbol="e"
+    )
     lower_offset: float = length(25.0, "lower link to inner lower link", symbol="v_1")
-    lower_offset_angle: float = angle(30.0 * DEG, "direction of that offset from +y; 30 keeps the parallelogram 30 degrees "
-                                      "from folding", least=-180.0 * DEG, most=180.0 * DEG)
+    lower_offset_angle: float = angle(
+        30.0 * DEG,
+        "direction of that offset from +y; 30 keeps the parallelogram 30 degrees from folding",
+        least=-180.0 * DEG,
+        most=180.0 * DEG,
+    )
     upper_offset: float = length(25.0, "upper link to inner upper link", symbol="v_2")
-    upper_offset_angle: float = angle(150.0 * DEG, "direction of that offset from +y", least=-180.0 * DEG,
-                                      most=180.0 * DEG)
+    upper_offset_angle: float = angle(
+        150.0 * DEG, "direction of that offset from +y", least=-180.0 * DEG, most=180.0 * DEG
+    )
 
     @property
     def chain_height(self) -> float:
@@ -52,8 +60,12 @@ class HitLimits:
     theta_1_max: float = angle(180.0 * DEG, "left lower link: horizontal", least=-180.0 * DEG, most=270.0 * DEG)
     theta_2_min: float = angle(0.0, "right lower link: horizontal", least=-180.0 * DEG, most=270.0 * DEG)
     theta_2_max: float = angle(120.0 * DEG, "right lower link from +y", least=-180.0 * DEG, most=270.0 * DEG)
-    elbow_min: float = angle(20.0 * DEG, "bend of an elbow (theta_1 - theta_2 if L_2 = L_3): away from stretched", least=0.0,
-                             most=180.0 * DEG)
+    elbow_min: float = angle(
+        20.0 * DEG,
+        "bend of an elbow (theta_1 - theta_2 if L_2 = L_3): away from stretched",
+        least=0.0,
+        most=180.0 * DEG,
+    )
     elbow_max: float = angle(150.0 * DEG, "bend of an elbow: away from folded", least=0.0, most=180.0 * DEG)
     pin_max: float = angle(45.0 * DEG, "lean of a leg to either side", least=0.0, most=90.0 * DEG)
     cone_max: float = angle(55.0 * DEG, "half angle of the ball joint's cone", least=0.0, most=90.0 * DEG)
@@ -66,7 +78,10 @@ class HitLinks:
     bar_width: float = length(12.0, "stiff enough at 150 mm for 10 N, light enough for a haptic device")
     eye_diameter: float = length(16.0, "bearing outer ring plus 3 mm wall")
     lip: float = length(1.0, "shoulder that holds the bearings' outer rings")
-    lip_bore: float = length(8.0, "bore of that shoulder: carries the outer ring, clears inner ring, sleeve and clip")
+    lip_bore: float = length(
+        9.0,
+        "bore of that shoulder: carries the outer ring (at most 9.2 for MR104), passes the clip with 0.8 mm of air",
+    )
     layer_gap: float = length(1.5, "air between neighbouring layers")
     end_length: float = length(1.0, "pin beyond its clip")
     inner_bar_width: float = length(9.0, "the inner bars only steer")
@@ -123,8 +138,9 @@ class HitSupplies:
 
     link_bearing: str = choice("MR104ZZ", "two at each end of a bar", names("bearings"))
     frame_bearing: str = choice("688ZZ", "drive shafts and pins", names("bearings"))
-    motor: str = choice("maxon-EC45flat-70W", "flat: swings in little room; its torque gives 3.6 N upwards at home",
-                        names("motors"))
+    motor: str = choice(
+        "maxon-EC45flat-70W", "flat: swings in little room; its torque gives 3.6 N upwards at home", names("motors")
+    )
     clip: str = choice("DIN6799-3.2", "holds the bars on their 4 mm pins", names("clips"))
 
 

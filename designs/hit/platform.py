@@ -33,10 +33,25 @@ def platform_parts(sections: Mapping[str, Any]) -> tuple[Part, ...]:
     top = low + s.plate_thickness
     up = Lay(z=(0.0, 0.0, 1.0))
     handle_screw = screw(_HANDLE_SCREW)
-    parts.append(Part(name="handle", feature=_handle(s), at=up.at(0.0, 0.0, top), material=m.handle,
-                      fit="on the plate, one screw from below"))
-    parts.append(purchased_part("handle_screw", screw_feature(_HANDLE_SCREW, _HANDLE_SCREW_LENGTH), handle_screw,
-                                up.at(0.0, 0.0, low), length=_HANDLE_SCREW_LENGTH, fit="into the handle"))
+    parts.append(
+        Part(
+            name="handle",
+            feature=_handle(s),
+            at=up.at(0.0, 0.0, top),
+            material=m.handle,
+            fit="on the plate, one screw from below",
+        )
+    )
+    parts.append(
+        purchased_part(
+            "handle_screw",
+            screw_feature(_HANDLE_SCREW, _HANDLE_SCREW_LENGTH),
+            handle_screw,
+            up.at(0.0, 0.0, low),
+            length=_HANDLE_SCREW_LENGTH,
+            fit="into the handle",
+        )
+    )
     return tuple(parts)
 
 
@@ -53,11 +68,24 @@ def _star(p: HitParameters, s: HitPlatform, d: SphericalJointDimensions, low: fl
         # From the hub's rim to where the bushing's back begins, 4 mm of metal left at both ends.
         first, last = hub + 4.0 + slot, reach - d.cover_diameter / 2.0 - 4.0 - slot
         if last > first:
-            windows.append(Slab(circles=tuple((f * math.cos(delta), f * math.sin(delta), slot) for f in (first, last)),
-                                low=low, high=high))
+            windows.append(
+                Slab(
+                    circles=tuple((f * math.cos(delta), f * math.sin(delta), slot) for f in (first, last)),
+                    low=low,
+                    high=high,
+                )
+            )
         holes.append(Hole(x=x, y=y, top=high, diameter=mount.clearance_hole))
-    holes.append(Hole(top=low, upwards=True, diameter=handle.clearance_hole, head_diameter=handle.countersink_diameter,
-                      head_depth=(handle.countersink_diameter - handle.clearance_hole) / 2.0, countersink=True))
+    holes.append(
+        Hole(
+            top=low,
+            upwards=True,
+            diameter=handle.clearance_hole,
+            head_diameter=handle.countersink_diameter,
+            head_depth=(handle.countersink_diameter - handle.clearance_hole) / 2.0,
+            countersink=True,
+        )
+    )
     return Milled(slabs=tuple(slabs), windows=tuple(windows), holes=tuple(holes), edge_break=0.5)
 
 
@@ -65,32 +93,59 @@ def _handle(s: HitPlatform) -> Turned:
     """A grip with a waist, tapped from below."""
     r, h = s.handle_diameter / 2.0, s.handle_length
     waist = 0.8 * r
-    profile = (Vertex(r=0.0, z=0.0), Vertex(r=r, z=0.0), Vertex(r=r, z=0.08 * h),
-               Vertex(r=waist, z=0.3 * h, mid=(0.87 * r, 0.18 * h)), Vertex(r=r, z=0.75 * h, mid=(0.92 * r, 0.52 * h)),
-               Vertex(r=r, z=h - r), Vertex(r=0.0, z=h, mid=(r * math.sqrt(0.5), h - r + r * math.sqrt(0.5))))
+    profile = (
+        Vertex(r=0.0, z=0.0),
+        Vertex(r=r, z=0.0),
+        Vertex(r=r, z=0.08 * h),
+        Vertex(r=waist, z=0.3 * h, mid=(0.87 * r, 0.18 * h)),
+        Vertex(r=r, z=0.75 * h, mid=(0.92 * r, 0.52 * h)),
+        Vertex(r=r, z=h - r),
+        Vertex(r=0.0, z=h, mid=(r * math.sqrt(0.5), h - r + r * math.sqrt(0.5))),
+    )
     return Turned(profile=profile, holes=(Hole(top=0.0, upwards=True, diameter=6.0, depth=18.0, thread="M6"),))
 
 
-def _socket(name: str, p: HitParameters, s: HitPlatform, d: SphericalJointDimensions, m: HitMaterials,
-            delta: float) -> tuple[Part, ...]:
+def _socket(
+    name: str, p: HitParameters, s: HitPlatform, d: SphericalJointDimensions, m: HitMaterials, delta: float
+) -> tuple[Part, ...]:
     """A socket that opens downwards, its ball's centre in the platform's plane, screwed on from above."""
     c, n = math.cos(delta), math.sin(delta)
     lay = Lay(z=(0.0, 0.0, -1.0), x=(c, n, 0.0), origin=(p.platform_radius * c, p.platform_radius * n, 0.0))
     at, mount, cover_row = lay.at(0.0, 0.0, 0.0), screw(_MOUNT_SCREW), screw(_COVER_SCREW)
     length = max(known for known in mount.lengths if known <= s.plate_thickness + d.mount_depth - 0.5)
-    made = (("bushing", bushing(d), m.platform, "on the arm, one screw from above", False),
-            ("shim", shim(d), m.pins, "under the lower ring, sets the play", False),
-            ("lower_ring", lower_ring(d), m.seats, "H7/h6 in the bushing", True),
-            ("upper_ring", upper_ring(d), m.seats, "H7/h6 in the bushing", True),
-            ("cover", shell_cover(d), m.platform, "on bushing and upper ring, screwed", False))
-    parts = [Part(name=f"{name}_{word}", feature=feature, at=at, material=material, fit=fit, runs_in_joint=runs)
-             for word, feature, material, fit, runs in made]
-    parts.append(purchased_part(f"{name}_mount_screw", screw_feature(mount.name, length), mount,
-                                lay.at(0.0, 0.0, d.back - s.plate_thickness), length=length, fit="into the bushing's floor"))
+    made = (
+        ("bushing", bushing(d), m.platform, "on the arm, one screw from above", False),
+        ("shim", shim(d), m.pins, "under the lower ring, sets the play", False),
+        ("lower_ring", lower_ring(d), m.seats, "H7/h6 in the bushing", True),
+        ("upper_ring", upper_ring(d), m.seats, "H7/h6 in the bushing", True),
+        ("cover", shell_cover(d), m.platform, "on bushing and upper ring, screwed", True),
+    )
+    parts = [
+        Part(name=f"{name}_{word}", feature=feature, at=at, material=material, fit=fit, runs_in_joint=runs)
+        for word, feature, material, fit, runs in made
+    ]
+    parts.append(
+        purchased_part(
+            f"{name}_mount_screw",
+            screw_feature(mount.name, length),
+            mount,
+            lay.at(0.0, 0.0, d.back - s.plate_thickness),
+            length=length,
+            fit="into the bushing's floor",
+        )
+    )
     for k in range(d.n_screws):
         angle = 2.0 * math.pi * k / d.n_screws
         r = d.screw_circle / 2.0
         place = lay.at(r * math.cos(angle), r * math.sin(angle), d.cover_face, flip=True)
-        parts.append(purchased_part(f"{name}_cover_screw_{k + 1}", screw_feature(cover_row.name, _COVER_SCREW_LENGTH),
-                                    cover_row, place, length=_COVER_SCREW_LENGTH, fit="into the bushing, flush"))
+        parts.append(
+            purchased_part(
+                f"{name}_cover_screw_{k + 1}",
+                screw_feature(cover_row.name, _COVER_SCREW_LENGTH),
+                cover_row,
+                place,
+                length=_COVER_SCREW_LENGTH,
+                fit="into the bushing, flush",
+            )
+        )
     return tuple(parts)

@@ -59,7 +59,7 @@ class Body:
         name: unique in the mechanism ("leg_1_lower_left").
         kind: bodies of one kind have equal parts in their own frames ("lower_left").
         group: the sub-assembly it is filed under ("leg_1"), or empty for the top level.
-        parts: at least one.
+        parts: none for a mechanism that has no solids yet.
     """
 
     name: str

@@ -37,8 +37,8 @@ class Material:
 
 @cache
 def _table() -> dict[str, Material]:
-    with files(__package__).joinpath("materials.csv").open(encoding="utf-8", newline="") as file:
-        return read_materials(file)
+    text = files(__package__).joinpath("materials.csv").read_text(encoding="utf-8")
+    return read_materials(text.splitlines())
 
 
 def read_materials(lines: Iterable[str]) -> dict[str, Material]:

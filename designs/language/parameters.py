@@ -58,8 +58,15 @@ def number(
     return dataclasses.field(default=float(default), metadata={_KEY: meta})
 
 
-def length(default: float, doc: str, *, symbol: str = "", above: float | None = 0.0, least: float | None = None,
-           most: float | None = None) -> Any:
+def length(
+    default: float,
+    doc: str,
+    *,
+    symbol: str = "",
+    above: float | None = 0.0,
+    least: float | None = None,
+    most: float | None = None,
+) -> Any:
     """A field for a length [mm], by default above zero."""
     return number(default, "mm", doc, symbol=symbol, above=None if least is not None else above, least=least, most=most)
 

@@ -58,6 +58,18 @@ def rotation_about(axis: Array, angle: float | Array) -> Array:
     return np.eye(3) + np.sin(a) * K + (1.0 - np.cos(a)) * (K @ K)
 
 
+def rotation_from_vector(vectors: Array) -> Array:
+    """Rotation matrices (..., 3, 3) from rotation vectors, axis times angle [rad], shape (..., 3)."""
+    v = np.asarray(vectors, dtype=float)
+    angle = np.linalg.norm(v, axis=-1)[..., None, None]
+    zero = np.zeros_like(v[..., 0])
+    K = np.stack([zero, -v[..., 2], v[..., 1], v[..., 2], zero, -v[..., 0], -v[..., 1], v[..., 0], zero], axis=-1)
+    K = K.reshape((*v.shape[:-1], 3, 3))
+    # sinc and its like stay finite at zero angle.
+    first, second = np.sinc(angle / np.pi), 0.5 * np.sinc(angle / (2.0 * np.pi)) ** 2
+    return np.eye(3) + first * K + second * (K @ K)
+
+
 def turn_about(point: Array, axis: Array, angle: float | Array) -> Array:
     """Pose change, shape (..., 4, 4), that turns about a line through a point [mm] by angles [rad]."""
     R = rotation_about(axis, angle)

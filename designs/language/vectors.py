@@ -32,7 +32,8 @@ class Vec(NamedTuple):
     def __mul__(self, factor: Number) -> Vec:  # type: ignore[override]
         return Vec(self.x * factor, self.y * factor, self.z * factor)
 
-    __rmul__ = __mul__  # type: ignore[assignment]
+    def __rmul__(self, factor: Number) -> Vec:  # type: ignore[override]
+        return self * factor
 
     def dot(self, other: Vec) -> Number:
         """Scalar product."""

@@ -22,7 +22,8 @@ Number = Any
 class Require(Protocol):
     """What a formula calls to state where it is legal."""
 
-    def __call__(self, margin: Number, name: str) -> None: ...
+    def __call__(self, margin: Number, name: str) -> None:
+        """State one requirement."""
 
 
 def _word(name: str, on_arrays: Callable[..., Number]) -> Callable[..., Number]:
@@ -59,6 +60,7 @@ class Requirements:
         self.margins: list[Number] = []
 
     def __call__(self, margin: Number, name: str) -> None:
+        """Keep the margin and its name."""
         self.names.append(name)
         self.margins.append(margin)
 

@@ -5,17 +5,23 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from linkwright.designs.language.errors import BuildError
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut, BRepAlgoAPI_Fuse
+from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepGProp import BRepGProp
 from OCP.GProp import GProp_GProps
 from OCP.ShapeUpgrade import ShapeUpgrade_UnifySameDomain
+from OCP.Standard import Standard_Failure
 from OCP.TopAbs import TopAbs_FACE, TopAbs_SHELL, TopAbs_SOLID
 from OCP.TopExp import TopExp
 from OCP.TopTools import TopTools_IndexedMapOfShape, TopTools_ListOfShape
 
+from linkwright.designs.language.errors import BuildError
+
 from .holes import Tool
+
+#: Surfaces further apart than this are not joined at the second try [mm, rad].
+_CAREFUL = 1e-9
 
 
 def sub_shapes(shape: Any, kind: Any) -> list[Any]:
@@ -71,10 +77,28 @@ def _run(operation: Any, arguments: Sequence[Any], tools: Sequence[Any], name: s
 
 
 def unify(shape: Any) -> Any:
-    """The shape with faces and edges of one surface or curve joined: each bore one cylinder."""
-    merger = ShapeUpgrade_UnifySameDomain(shape, True, True, False)
-    merger.Build()
-    return merger.Shape()
+    """The shape with neighbouring faces of one surface joined, so that each bore is one cylinder.
+
+    The kernel's merger now and then spoils a good shape: it joins faces that only touch, or gives up on curves. What
+    it makes counts only if it is valid and has not changed the volume; else a more careful try does, in the end the
+    shape as it was, whose faces are many but right.
+    """
+    volume = compute_volume(shape)
+    for with_edges, tolerance in ((True, None), (True, _CAREFUL), (False, _CAREFUL)):
+        # On a copy: a failed try leaves its argument spoilt.
+        copy = BRepBuilderAPI_Copy(shape).Shape()
+        merger = ShapeUpgrade_UnifySameDomain(copy, with_edges, True, False)
+        if tolerance is not None:
+            merger.SetLinearTolerance(tolerance)
+            merger.SetAngularTolerance(tolerance)
+        try:
+            merger.Build()
+        except Standard_Failure:
+            continue
+        merged = merger.Shape()
+        if abs(compute_volume(merged) - volume) <= 1e-9 * abs(volume) and BRepCheck_Analyzer(merged).IsValid():
+            return merged
+    return shape
 
 
 def sole_solid(shape: Any, volume: tuple[float, float], what: str, where: str) -> Any:

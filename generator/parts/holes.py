@@ -20,6 +20,16 @@ _RUN_OUT = 1.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Bore:
+    """The narrow part of a drilled hole: from `origin` [mm] along a unit direction, radius and depth [mm]."""
+
+    origin: tuple[float, float, float]
+    direction: tuple[float, float, float]
+    radius: float
+    depth: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Tool:
     """What one hole takes away.
 
@@ -27,11 +37,13 @@ class Tool:
         name: for messages ("hole 2").
         shape: solid of the kernel.
         volume: of the tool [mm3]; the part loses no more than that.
+        bore: of a drilled hole; None for what is milled or broached.
     """
 
     name: str
     shape: Any
     volume: float
+    bore: Bore | None = None
 
 
 def hole_centres(hole: Hole) -> tuple[tuple[float, float], ...]:
@@ -55,20 +67,7 @@ def hole_steps(hole: Hole, i: int, span: tuple[float, float], where: str) -> tup
         BuildError: a length that is not positive, a head that does not fit its hole, or a mouth beyond the part.
     """
     name = f"hole {i}"
-    _need(hole.diameter > 0.0, where, f"{name} has diameter {hole.diameter:g} mm; it must be positive")
-    _need(hole.depth is None or hole.depth > 0.0, where, f"{name} has depth {hole.depth} mm; it must be positive")
-    _need(hole.n >= 1, where, f"{name} is repeated {hole.n} times; at least once")
-    _need(
-        hole.n == 1 or hole.pitch_radius > 0.0,
-        where,
-        f"{name} is repeated {hole.n} times on a circle of radius {hole.pitch_radius:g} mm; it must be positive",
-    )
-    _need(
-        hole.head_diameter >= 0.0 and hole.head_depth >= 0.0,
-        where,
-        f"{name} has a head of diameter "
-        f"{hole.head_diameter:g} mm and depth {hole.head_depth:g} mm; neither may be negative",
-    )
+    _check_numbers(hole, name, where)
     beyond = hole.top - span[0] if not hole.upwards else span[1] - hole.top
     _need(
         beyond > 0.0,
@@ -80,23 +79,35 @@ def hole_steps(hole: Hole, i: int, span: tuple[float, float], where: str) -> tup
     if hole.head_diameter == 0.0:
         return ((radius, 0.0), (radius, depth))
     head = hole.head_diameter / 2.0
+    head_depth, deepest = (head - radius if hole.countersink else hole.head_depth), min(depth, beyond)
     _need(
-        head > radius,
+        0.0 < head_depth < deepest,
+        where,
+        f"{name} has a head {head_depth:g} mm deep; that must lie between 0 and {deepest:g} mm, where the hole or "
+        "the part ends",
+    )
+    if hole.countersink:
+        return ((head, 0.0), (radius, head_depth), (radius, depth))
+    return ((head, 0.0), (head, head_depth), (radius, head_depth), (radius, depth))
+
+
+def _check_numbers(hole: Hole, name: str, where: str) -> None:
+    """What must hold for a hole's numbers whatever the part."""
+    place = (hole.x, hole.y, hole.top, hole.first)
+    _need(all(map(math.isfinite, place)), where, f"{name} lies at {place}: not numbers")
+    _need(hole.diameter > 0.0, where, f"{name} has diameter {hole.diameter:g} mm; it must be positive")
+    _need(hole.depth is None or hole.depth > 0.0, where, f"{name} has depth {hole.depth} mm; it must be positive")
+    _need(hole.n >= 1, where, f"{name} is repeated {hole.n} times; at least once")
+    _need(
+        hole.n == 1 or hole.pitch_radius > 0.0,
+        where,
+        f"{name} is repeated {hole.n} times on a circle of radius {hole.pitch_radius:g} mm; it must be positive",
+    )
+    _need(
+        hole.head_diameter == 0.0 or hole.head_diameter > hole.diameter,
         where,
         f"{name} has a head of diameter {hole.head_diameter:g} mm; it must be wider than the hole "
         f"({hole.diameter:g} mm)",
-    )
-    head_depth = head - radius if hole.countersink else hole.head_depth
-    _need(
-        0.0 < head_depth < depth,
-        where,
-        f"{name} has a head {head_depth:g} mm deep; that must lie between 0 and the hole's own depth ({depth:g} mm)",
-    )
-    corner = (radius, head_depth)
-    return (
-        ((head, 0.0), corner, (radius, depth))
-        if hole.countersink
-        else ((head, 0.0), (head, head_depth), corner, (radius, depth))
     )
 
 
@@ -124,7 +135,8 @@ def tools_of_cross_holes(holes: tuple[CrossHole, ...], where: str) -> list[Tool]
         )
         length = math.hypot(*hole.direction)
         _need(length > 1e-9, where, f"{name} has no direction")
-        direction = tuple(c / length for c in hole.direction)
+        a, b, c = hole.direction
+        direction = (a / length, b / length, c / length)
         steps = ((hole.diameter / 2.0, 0.0), (hole.diameter / 2.0, hole.depth))
         tools.append(_drill(f"{name} (diameter {hole.diameter:g} mm)", steps, hole.origin, direction))
     return tools
@@ -160,7 +172,8 @@ def _drill(
     from .revolve import revolve
 
     edges = straight_profile(((0.0, 0.0), *steps, (0.0, steps[-1][1])))
-    return Tool(name=name, shape=revolve(edges, origin, direction), volume=swept_volume(edges))
+    bore = Bore(origin=origin, direction=direction, radius=steps[-1][0], depth=steps[-1][1])
+    return Tool(name=name, shape=revolve(edges, origin, direction), volume=swept_volume(edges), bore=bore)
 
 
 def _need(holds: bool, where: str, what: str) -> None:

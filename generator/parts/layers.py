@@ -45,9 +45,24 @@ def prisms_of_slabs(slabs: tuple[Any, ...], name: str) -> tuple[Prism, ...]:
     )
 
 
+def drop_contained(prisms: tuple[Prism, ...]) -> tuple[Prism, ...]:
+    """The prisms without those that lie within another one and so add nothing."""
+    kept: list[Prism] = []
+    for i, inner in enumerate(prisms):
+        others = [*kept, *prisms[i + 1 :]]
+        if not any(outer.spans(inner.low, inner.high) and _covers(outer.arcs, inner.arcs) for outer in others):
+            kept.append(inner)
+    return tuple(kept)
+
+
+def _covers(outer: tuple[Arc, ...], inner: tuple[Arc, ...]) -> bool:
+    return all(depth_inside(outer, arc.x, arc.y) >= arc.radius - _SAME for arc in inner)
+
+
 def hole_prisms(feature: Milled, span: tuple[float, float], where: str) -> tuple[list[Prism], list[Prism]]:
     """Cylinders that the holes certainly clear, and cylinders that they certainly stay within; equal but at a cone."""
-    least, most = [], []
+    least: list[Prism] = []
+    most: list[Prism] = []
     for i, hole in enumerate(feature.holes):
         steps = hole_steps(hole, i, span, where)
         sign = 1.0 if hole.upwards else -1.0
@@ -88,7 +103,8 @@ def bound_volume(slabs: tuple[Prism, ...], least_cut: list[Prism], most_cut: lis
         outer = _section(here, outside=True) - _section([p for p in least_cut if p.spans(low, high)], outside=False)
         lower += inner.area() * (high - low)
         upper += outer.area() * (high - low)
-    return lower * (1.0 - 1e-9), upper * (1.0 + 1e-9)
+    # The polygon library rounds corners to 1e-8 mm.
+    return lower * (1.0 - 1e-6), upper * (1.0 + 1e-6)
 
 
 def _section(prisms: list[Prism], *, outside: bool, n: int = _CHORDS) -> Any:
@@ -129,7 +145,7 @@ def _wall(disc: Arc, slabs: list[Prism]) -> float | None:
     hole = Prism(name="", arcs=(disc,), low=0.0, high=0.0)
     outer = _section([hole], outside=True, n=_FINE_CHORDS)
     held = (outer ^ _section(slabs, outside=False, n=_FINE_CHORDS)).area() / outer.area()
-    return None if held > 1.0 - 1e-9 or held < 1e-6 else max(depths) - disc.radius
+    return None if held > 1.0 - 1e-7 or held < 1e-6 else max(depths) - disc.radius
 
 
 def chamfer_volume(arcs: tuple[Arc, ...], c: float) -> float:

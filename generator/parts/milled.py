@@ -11,7 +11,16 @@ from linkwright.designs.language.features import Milled, Slab
 from .blank import Blank
 from .booleans import fuse
 from .holes import Tool, tools_of_cross_holes, tools_of_holes
-from .layers import Prism, bound_volume, chamfer_volume, hole_prisms, largest, prisms_of_slabs, refuse_lost_walls
+from .layers import (
+    Prism,
+    bound_volume,
+    chamfer_volume,
+    drop_contained,
+    hole_prisms,
+    largest,
+    prisms_of_slabs,
+    refuse_lost_walls,
+)
 from .outline import outline_area, split_arcs
 from .prism import break_edges, build_prism
 
@@ -27,7 +36,8 @@ def build_milled(feature: Milled, where: str) -> Blank:
     for name, group in (("slab", feature.slabs), ("window", feature.windows)):
         for i, slab in enumerate(group):
             _check_slab(slab, f"{name} {i}", where)
-    slabs, windows = prisms_of_slabs(feature.slabs, "slab"), prisms_of_slabs(feature.windows, "window")
+    slabs = drop_contained(prisms_of_slabs(feature.slabs, "slab"))
+    windows = prisms_of_slabs(feature.windows, "window")
     span = (min(s.low for s in slabs), max(s.high for s in slabs))
     tools = _window_tools(windows, slabs) + tools_of_holes(feature.holes, span, where)
     tools += tools_of_cross_holes(feature.cross_holes, where)

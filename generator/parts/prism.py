@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from linkwright.designs.language.errors import BuildError
 from OCP.BRep import BRep_Tool
 from OCP.BRepBuilderAPI import (
     BRepBuilderAPI_MakeEdge,
@@ -19,6 +18,8 @@ from OCP.Geom import Geom_Circle
 from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt, gp_Vec
 from OCP.TopAbs import TopAbs_EDGE, TopAbs_VERTEX
 from OCP.TopoDS import TopoDS
+
+from linkwright.designs.language.errors import BuildError
 
 from .booleans import sole_solid, sub_shapes
 from .layers import chamfer_volume
@@ -71,7 +72,7 @@ def break_edges(prism: Any, arcs: tuple[Arc, ...], low: float, high: float, size
         BuildError: the chamfer does not fit, or the kernel's differs from the outline moved inwards.
     """
     tightest = min((arc.radius for arc in arcs if arc.radius > 0.0), default=math.inf)
-    if size < 0.0 or size >= tightest or 2.0 * size >= high - low:
+    if size < 0.0 or size >= tightest or 2.0 * size > high - low - _SAME_POINT:
         raise BuildError(
             where,
             f"an edge break of {size:g} mm does not fit the largest slab: it must lie between 0, its smallest "

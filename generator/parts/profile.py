@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+
 from linkwright.designs.language.errors import BuildError
 from linkwright.designs.language.features import Vertex
 

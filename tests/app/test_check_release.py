@@ -90,6 +90,19 @@ def test_check_tells_a_finding_with_its_numbers_pose_line_and_cure(linkwright, h
     assert text.index("error [clearance]") < text.index("warning [fit]")
 
 
+def test_joint_limits_are_told_in_degrees_beside_the_declared_ones(linkwright, house):
+    row = {"lower": -1.0, "upper": 2.0, "declared_lower": -0.5, "declared_upper": 1.5, "unit": "rad",
+           "unlimited": False, "stopped_below_by": "", "stopped_above_by": "base/lug - fore/eye"}
+    slide = {**row, "unit": "mm", "unlimited": True}
+    facts = {"limits": {"elbow": row, "slide": slide}, "azimuths": [float(i) for i in range(36)]}
+    house.report = Report(results=(CheckResult(check="joint-limits", looked_at={"joints": 2}, facts=facts),))
+    text = linkwright("check", "arm").stdout
+    elbow, slide = (next(line for line in text.splitlines() if line.startswith(name)) for name in ("elbow", "slide"))
+    assert elbow.split() == ["elbow", "-57.30", "-28.65", "85.94", "114.59", "deg", "base/lug", "-", "fore/eye"]
+    assert slide.split() == ["slide", "-1.00", "-0.50", "1.50", "2.00", "mm", "nothing"]
+    assert "azimuths: 36 numbers, 0 to 35" in text
+
+
 def test_check_tells_that_a_design_passes(linkwright, house):
     assert "PASS  arm: 0 errors" in linkwright("check", "arm").stdout
 
@@ -122,8 +135,8 @@ def test_an_error_of_the_upper_storeys_is_one_line_and_code_two(linkwright, hous
 def test_release_shows_what_was_written_and_what_for(linkwright, house):
     text = linkwright("release", "arm", "-o", "out", "--strict").stdout
     assert house.released == {"out": Path("out"), "strict": True}
-    for words in ("PASS", "assembly.step  the whole device", "9 files .stl", "manifest.json", "12 files", "3 parts to make",
-                  "4 to buy", "2.5 kg"):
+    for words in ("PASS", "assembly.step  the whole device", "9 files .stl", "manifest.json", "12 files",
+                  "3 parts to make", "4 to buy", "2.5 kg"):
         assert words in text
     assert "part_3" not in text
 

@@ -14,13 +14,16 @@ from linkwright.app.cli import COMMANDS
 from linkwright.designs import catalogue
 from linkwright.designs.language.supplies import names
 
-HEAVY = ("OCP", "build123d", "cadquery", "numba", "trimesh", "vtk", "manifold3d", "scipy", "rich")
+HEAVY = ("OCP", "build123d", "cadquery", "numba", "trimesh", "vtk", "manifold3d", "scipy", "rich",
+         "pydantic")
 
 
 def run_fresh(code, *words):
     """A new interpreter without anything on its input."""
-    return subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True, stdin=subprocess.DEVNULL,
-                          check=False, env={**os.environ, "COLUMNS": "120"})
+    return subprocess.run(
+        [sys.executable, "-c", code, *words], capture_output=True, text=True, stdin=subprocess.DEVNULL, check=False,
+        env={**os.environ, "COLUMNS": "120"},
+    )
 
 
 @pytest.mark.parametrize("word", list(COMMANDS))
@@ -100,8 +103,10 @@ def test_several_errors_are_a_line_each_and_a_list_in_json(linkwright, tmp_path)
     ]
 
 
-@pytest.mark.parametrize("words", [["explode"], ["show"], ["show", "arm", "--no-such"], ["ik", "arm", "--format", "xml"],
-                                   ["check", "arm", "--poses", "0"], ["check", "arm", "--seed", "-1"], ["release", "arm"]])
+@pytest.mark.parametrize("words", [
+    ["explode"], ["show"], ["show", "arm", "--no-such"], ["ik", "arm", "--format", "xml"],
+    ["check", "arm", "--poses", "0"], ["check", "arm", "--seed", "-1"], ["release", "arm"],
+])
 def test_wrong_usage_ends_with_code_two(linkwright, words):
     result = linkwright(*words)
     assert (result.exit_code, result.stdout) == (2, "")

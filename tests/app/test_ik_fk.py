@@ -127,7 +127,8 @@ def test_wrong_rows_are_refused_with_line_and_column(linkwright, text, words):
 @pytest.mark.parametrize("words", [
     ["ik", "arm", "--pose", "80"], ["ik", "arm", "--pose", "80,x"], ["fk", "arm", "--joints", "1,2,3"],
     ["fk", "arm", "--joints", "1,2", "--near", "1"], ["ik", "arm", "-i", "missing.csv"],
-    ["ik", "arm", "--pose", "80,70", "--branch", "sideways"], ["ik", "arm", "--pose", "80,70", "-o", "no/such/folder.csv"],
+    ["ik", "arm", "--pose", "80,70", "--branch", "sideways"],
+    ["ik", "arm", "--pose", "80,70", "-o", "no/such/folder.csv"],
 ])
 def test_wrong_options_end_with_code_two_and_one_line(linkwright, words):
     result = linkwright(*words)

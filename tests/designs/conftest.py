@@ -75,7 +75,8 @@ class Arm(Mechanism):
                   p_child=origin, axis_child=z, lower=-math.pi, upper=math.pi, is_active=name != "wrist")
             for name, parent, child in names
         )
-        self.bodies = tuple(Body(name=name, kind=name, group="", parts=()) for name in ("base", "upper", "fore", "hand"))
+        bodies = ("base", "upper", "fore", "hand")
+        self.bodies = tuple(Body(name=name, kind=name, group="", parts=()) for name in bodies)
         self.home = np.array([p.upper, p.fore])
 
     def solve_inverse(self, poses: np.ndarray, branch: str | None = None) -> InverseSolution:
@@ -86,7 +87,8 @@ class Arm(Mechanism):
         d = np.hypot(poses[:, 0], poses[:, 1])
         cosine = (d**2 - p.upper**2 - p.fore**2) / (2.0 * p.upper * p.fore)
         elbow = np.arccos(np.clip(cosine, -1.0, 1.0))
-        shoulder = np.arctan2(poses[:, 1], poses[:, 0]) - np.arctan2(p.fore * np.sin(elbow), p.upper + p.fore * np.cos(elbow))
+        bend = np.arctan2(p.fore * np.sin(elbow), p.upper + p.fore * np.cos(elbow))
+        shoulder = np.arctan2(poses[:, 1], poses[:, 0]) - bend
         margins = np.stack([p.upper + p.fore - d, d - abs(p.upper - p.fore)], axis=-1)
         return InverseSolution(
             joints=np.stack([shoulder, elbow, -shoulder - elbow], axis=-1), margins=margins,
@@ -96,7 +98,8 @@ class Arm(Mechanism):
     def solve_forward(self, active: np.ndarray, near: np.ndarray | None = None) -> ForwardSolution:
         """The hand; without a pose nearby an elbow below -90 degrees is held ambiguous."""
         p = self.sections["parameters"]
-        poses = np.stack([p.upper * word(active[:, 0]) + p.fore * word(active.sum(axis=1)) for word in (np.cos, np.sin)], -1)
+        first, both = active[:, 0], active.sum(axis=1)
+        poses = np.stack([p.upper * f(first) + p.fore * f(both) for f in (np.cos, np.sin)], axis=-1)
         n_found = np.where((active[:, 1] < -0.5 * math.pi) & (near is None), 2, 1)
         return ForwardSolution(poses=poses, is_solved=n_found == 1, n_candidates=n_found, residual=np.zeros(len(poses)))
 

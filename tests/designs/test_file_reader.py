@@ -6,9 +6,12 @@ import math
 
 import pytest
 
+from linkwright.designs import catalogue
+from linkwright.designs.file.keys import keys_of
 from linkwright.designs.file.problems import DesignFileErrors
 from linkwright.designs.file.reader import load_design, read_design
 from linkwright.designs.language.errors import DesignFileError, UnknownNameError
+from linkwright.designs.language.units import file_from_inside
 
 
 @pytest.fixture
@@ -223,3 +226,32 @@ def test_a_byte_order_mark_and_windows_line_ends_do_no_harm(load, tmp_path):
     design = load(str(tmp_path / "w.toml"))
     assert design.mechanism.sections["parameters"].fore == 90.0
     assert design.lines["parameters.fore_mm"] == 3
+
+
+def beyond_bounds(key):
+    """A value that the key's bounds refuse, or None if every number is legal."""
+    meta = key.meta
+    if meta.choices:
+        return "no_such_choice"
+    bounds = {"above": meta.above, "least": meta.least, "most": meta.most}
+    low = next((bounds[b] for b in ("above", "least") if bounds[b] is not None), None)
+    if low is not None:
+        return file_from_inside(low, meta.unit) - (0 if meta.above is not None else 1)
+    return None if meta.most is None else file_from_inside(meta.most, meta.unit) + 1
+
+
+def test_every_bound_of_every_mechanism_is_kept_and_all_breaches_are_told_together(each_design):
+    keys = keys_of(catalogue.entry(each_design.mechanism.name))
+    bad = {dotted: value for dotted, key in keys.items() if (value := beyond_bounds(key)) is not None}
+    assert len(bad) > 20
+    with pytest.raises(DesignFileErrors) as caught:
+        load_design(each_design.mechanism.name, [f"{dotted}={value}" for dotted, value in bad.items()])
+    assert {error.key for error in caught.value.errors} == set(bad)
+    assert all(error.path == "--set" for error in caught.value.errors)
+
+
+def test_every_default_of_every_mechanism_can_be_set_to_itself(each_design):
+    keys = keys_of(catalogue.entry(each_design.mechanism.name))
+    shown = {dotted: str(key.default).lower() if key.kind is bool else key.default for dotted, key in keys.items()}
+    texts = [f"{dotted}={value}" for dotted, value in shown.items()]
+    assert load_design(each_design.mechanism.name, texts).hash == each_design.hash

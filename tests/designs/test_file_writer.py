@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import tomllib
 
 import pytest
@@ -28,8 +29,9 @@ def test_the_example_names_every_key_of_the_mechanism(read, arm):
 def test_a_resolved_design_reads_back_with_its_hash_and_is_stable(read, arm, rng):
     for _ in range(50):
         upper, fore, tilt = rng.uniform(1.0, 400.0), rng.uniform(1.0, 400.0), rng.uniform(-89.0, 89.0)
+        numbers = {"parameters.upper_mm": upper, "parameters.fore_mm": fore, "parts.bars.tilt_deg": tilt}
         design = read('mechanism = "arm"\n[[allowed]]\npair = ["base", "fore"]\nreason = "a \\"tight\\" fit\\n#1"\n',
-                      [f"parameters.upper_mm={upper!r}", f"parameters.fore_mm={fore!r}", f"parts.bars.tilt_deg={tilt!r}"])
+                      [f"{key}={value!r}" for key, value in numbers.items()])
         text = text_of(design, entry=arm)
         again = read(text)
         assert again.hash == design.hash
@@ -56,7 +58,7 @@ def test_a_changed_value_says_its_default(read, arm):
 def test_one_blank_line_stands_before_each_table(arm):
     lines = example_of("arm", entry=arm).splitlines()
     assert "" in lines
-    assert all(a or b for a, b in zip(lines, lines[1:], strict=False))
+    assert all(a or b for a, b in itertools.pairwise(lines))
 
 
 def test_the_shown_hint_of_an_allowed_contact_is_toml(arm):

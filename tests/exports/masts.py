@@ -1,4 +1,4 @@
-"""Two masts: arms that turn on pins of one base, each with a rod on a ball at its tip. In no catalogue, all joints real."""
+"""Two masts: arms on pins of one base, each with a rod on a ball at its tip. In no catalogue, but all joints real."""
 
 from __future__ import annotations
 
@@ -52,21 +52,28 @@ def ring(inner: float, outer: float, low: float, high: float) -> Turned:
 def ball_bar(radius: float, root: float, reach: float) -> Turned:
     """A ball about the origin with a bar upwards."""
     start = math.sqrt(radius**2 - root**2)
-    return Turned(profile=(
-        Vertex(r=0.0, z=-radius),
-        Vertex(r=root, z=start, mid=(radius, 0.0)),
-        Vertex(r=root, z=reach),
-        Vertex(r=0.0, z=reach),
-    ))
+    return Turned(
+        profile=(
+            Vertex(r=0.0, z=-radius),
+            Vertex(r=root, z=start, mid=(radius, 0.0)),
+            Vertex(r=root, z=reach),
+            Vertex(r=0.0, z=reach),
+        )
+    )
 
 
 def seat(radius: float, outer: float) -> Turned:
     """A ring about the origin, spherical inside, from half a radius below to half a radius above."""
     h = 0.5 * radius
     r = math.sqrt(radius**2 - h**2)
-    return Turned(profile=(
-        Vertex(r=outer, z=-h), Vertex(r=outer, z=h), Vertex(r=r, z=h), Vertex(r=r, z=-h, mid=(radius, 0.0)),
-    ))
+    return Turned(
+        profile=(
+            Vertex(r=outer, z=-h),
+            Vertex(r=outer, z=h),
+            Vertex(r=r, z=h),
+            Vertex(r=r, z=-h, mid=(radius, 0.0)),
+        )
+    )
 
 
 class Masts(Mechanism):
@@ -87,51 +94,115 @@ class Masts(Mechanism):
     def _joints(self):
         lim = self.sections["joint_limits"]
         for i, side in enumerate(SIDES, 1):
-            yield Joint(name=f"turn_{i}", kind=JointKind.REVOLUTE, parent="base", child=f"leg_{i}_arm",
-                        p_parent=(side * self.p.half_distance, 0.0, 5.0), axis_parent=(0.0, 0.0, 1.0),
-                        p_child=(0.0, 0.0, 0.0), axis_child=(0.0, 0.0, 1.0), lower=-lim.turn_max, upper=lim.turn_max,
-                        is_active=True)
+            yield Joint(
+                name=f"turn_{i}",
+                kind=JointKind.REVOLUTE,
+                parent="base",
+                child=f"leg_{i}_arm",
+                p_parent=(side * self.p.half_distance, 0.0, 5.0),
+                axis_parent=(0.0, 0.0, 1.0),
+                p_child=(0.0, 0.0, 0.0),
+                axis_child=(0.0, 0.0, 1.0),
+                lower=-lim.turn_max,
+                upper=lim.turn_max,
+                is_active=True,
+            )
         for i, _ in enumerate(SIDES, 1):
-            yield Joint(name=f"ball_{i}", kind=JointKind.SPHERICAL, parent=f"leg_{i}_arm", child=f"leg_{i}_rod",
-                        p_parent=(0.0, self.p.arm_length, self.p.ball_height), axis_parent=(0.0, 0.0, 1.0),
-                        p_child=(0.0, 0.0, 0.0), axis_child=(0.0, 0.0, 1.0), lower=0.0, upper=lim.cone_max)
+            yield Joint(
+                name=f"ball_{i}",
+                kind=JointKind.SPHERICAL,
+                parent=f"leg_{i}_arm",
+                child=f"leg_{i}_rod",
+                p_parent=(0.0, self.p.arm_length, self.p.ball_height),
+                axis_parent=(0.0, 0.0, 1.0),
+                p_child=(0.0, 0.0, 0.0),
+                axis_child=(0.0, 0.0, 1.0),
+                lower=0.0,
+                upper=lim.cone_max,
+            )
 
     def _bodies(self):
         d = self.p.half_distance
-        plate = Milled(slabs=(Slab(circles=((-d, 0.0, 20.0), (d, 0.0, 20.0)), low=-6.0, high=0.0),),
-                       holes=tuple(Hole(x=side * d, top=0.0, diameter=6.0) for side in SIDES))
-        pin = Turned(profile=(Vertex(r=0.0, z=-6.0), Vertex(r=3.0, z=-6.0), Vertex(r=3.0, z=12.0), Vertex(r=0.0, z=12.0)))
-        pins = tuple(Part(name=f"pin_{i}", feature=pin, at=Placement(origin=(side * d, 0.0, 0.0)), material="steel_c45",
-                          runs_in_joint=True, fit="press") for i, side in enumerate(SIDES, 1))
-        yield Body(name="base", kind="base", group="",
-                   parts=(Part(name="plate", feature=plate, material="aluminium_6082"), *pins))
+        plate = Milled(
+            slabs=(Slab(circles=((-d, 0.0, 20.0), (d, 0.0, 20.0)), low=-6.0, high=0.0),),
+            holes=tuple(Hole(x=side * d, top=0.0, diameter=6.0) for side in SIDES),
+        )
+        pin = Turned(
+            profile=(Vertex(r=0.0, z=-6.0), Vertex(r=3.0, z=-6.0), Vertex(r=3.0, z=12.0), Vertex(r=0.0, z=12.0))
+        )
+        pins = tuple(
+            Part(
+                name=f"pin_{i}",
+                feature=pin,
+                at=Placement(origin=(side * d, 0.0, 0.0)),
+                material="steel_c45",
+                runs_in_joint=True,
+                fit="press",
+            )
+            for i, side in enumerate(SIDES, 1)
+        )
+        yield Body(
+            name="base",
+            kind="base",
+            group="",
+            parts=(Part(name="plate", feature=plate, material="aluminium_6082"), *pins),
+        )
         own = self.sections["parts"]
         arm = Milled(
             slabs=(Slab(circles=((0.0, 0.0, own.width), (0.0, self.p.arm_length, own.width)), low=1.0, high=9.0),),
-            holes=(Hole(top=9.0, diameter=10.0), Hole(y=self.p.arm_length, top=9.0, diameter=12.0)), edge_break=0.4,
+            holes=(Hole(top=9.0, diameter=10.0), Hole(y=self.p.arm_length, top=9.0, diameter=12.0)),
+            edge_break=0.4,
         )
         for i, _ in enumerate(SIDES, 1):
-            yield Body(name=f"leg_{i}_arm", kind="arm", group=f"leg_{i}", parts=(
-                Part(name="bar", feature=arm, at=Placement(), material=own.material),
-                Part(name="bearing", feature=ring(3.05, 5.0, 2.0, 6.0), material="steel_100cr6", purchased="MR106ZZ",
-                     mass=0.0012, runs_in_joint=True),
-                Part(name="seat", feature=seat(5.03, 9.0), material="bronze_cusn8", runs_in_joint=True,
-                     at=Placement(origin=(0.0, self.p.arm_length, self.p.ball_height))),
-            ))
-            yield Body(name=f"leg_{i}_rod", kind="rod", group=f"leg_{i}", parts=(
-                Part(name="ball_bar", feature=ball_bar(5.0, 2.0, 40.0), material="steel_100cr6", runs_in_joint=True),
-            ))
+            yield Body(
+                name=f"leg_{i}_arm",
+                kind="arm",
+                group=f"leg_{i}",
+                parts=(
+                    Part(name="bar", feature=arm, at=Placement(), material=own.material),
+                    Part(
+                        name="bearing",
+                        feature=ring(3.05, 5.0, 2.0, 6.0),
+                        material="steel_100cr6",
+                        purchased="MR106ZZ",
+                        mass=0.0012,
+                        runs_in_joint=True,
+                    ),
+                    Part(
+                        name="seat",
+                        feature=seat(5.03, 9.0),
+                        material="bronze_cusn8",
+                        runs_in_joint=True,
+                        at=Placement(origin=(0.0, self.p.arm_length, self.p.ball_height)),
+                    ),
+                ),
+            )
+            yield Body(
+                name=f"leg_{i}_rod",
+                kind="rod",
+                group=f"leg_{i}",
+                parts=(
+                    Part(
+                        name="ball_bar", feature=ball_bar(5.0, 2.0, 40.0), material="steel_100cr6", runs_in_joint=True
+                    ),
+                ),
+            )
 
     def solve_inverse(self, poses, branch=None):
         joints = np.concatenate([poses, np.zeros((len(poses), 2))], axis=1)
         margins = self.sections["joint_limits"].turn_max - np.abs(poses)
-        return InverseSolution(joints=joints, margins=margins, requirements=("turn_1", "turn_2"),
-                               is_reachable=np.all(margins >= 0.0, axis=1))
+        return InverseSolution(
+            joints=joints,
+            margins=margins,
+            requirements=("turn_1", "turn_2"),
+            is_reachable=np.all(margins >= 0.0, axis=1),
+        )
 
     def solve_forward(self, active, near=None):
         n = len(active)
-        return ForwardSolution(poses=np.array(active), is_solved=np.ones(n, bool), n_candidates=np.ones(n, int),
-                               residual=np.zeros(n))
+        return ForwardSolution(
+            poses=np.array(active), is_solved=np.ones(n, bool), n_candidates=np.ones(n, int), residual=np.zeros(n)
+        )
 
     def compute_jacobian(self, poses):
         return np.broadcast_to(np.eye(2), (len(poses), 2, 2)).copy()
@@ -152,16 +223,31 @@ class Masts(Mechanism):
         return {"span": (2.0 * self.p.half_distance, "mm", "pin to pin")}
 
     def controller_parameters(self):
-        return {"half_distance": (self.p.half_distance, "mm"), "arm_length": (self.p.arm_length, "mm"),
-                "ball_height": (self.p.ball_height, "mm")}
+        return {
+            "half_distance": (self.p.half_distance, "mm"),
+            "arm_length": (self.p.arm_length, "mm"),
+            "ball_height": (self.p.ball_height, "mm"),
+        }
 
 
-ENTRY = Entry(name="masts", title=Masts.title, source=Masts.source, sections=SECTIONS, task=TASK,
-              workspace=Workspace(lower=(-0.5, -0.5), upper=(0.5, 0.5)), build=Masts)
+ENTRY = Entry(
+    name="masts",
+    title=Masts.title,
+    source=Masts.source,
+    sections=SECTIONS,
+    task=TASK,
+    workspace=Workspace(lower=(-0.5, -0.5), upper=(0.5, 0.5)),
+    build=Masts,
+)
 
 
 def masts_design(*, outputs: Outputs | None = None, **numbers: Any) -> Design:
     """A design with kinematic parameters of its own."""
     mechanism = Masts({"parameters": MastParameters(**numbers)})
-    return Design(name="two_masts", mechanism=mechanism, workspace=ENTRY.workspace, outputs=outputs or Outputs(),
-                  clearance=Clearance(mesh_deviation=0.05))
+    return Design(
+        name="two_masts",
+        mechanism=mechanism,
+        workspace=ENTRY.workspace,
+        outputs=outputs or Outputs(),
+        clearance=Clearance(mesh_deviation=0.05),
+    )

@@ -69,13 +69,20 @@ def test_the_jacobian_equals_finite_differences(each_design, feasible_poses):
     mechanism = each_design.mechanism
     poses = feasible_poses(each_design, 1500)
     joints = mechanism.solve_inverse(poses).joints
-    bends = [np.abs(np.sin(joints[:, k])) for k, j in enumerate(mechanism.joints) if "elbow_left" in j.name or "elbow_right" in j.name]
+    bends = [
+        np.abs(np.sin(joints[:, k]))
+        for k, j in enumerate(mechanism.joints)
+        if "elbow_left" in j.name or "elbow_right" in j.name
+    ]
     poses = poses[np.min(bends, axis=0) > 0.4]
     assert len(poses) > 300
     J = mechanism.compute_jacobian(poses)
     for axis in range(J.shape[-1]):
         h = 1e-2 if axis < 3 else 1e-4
-        moved = [mechanism.solve_inverse(_twisted(poses, axis, k * h)).joints[:, : mechanism.n_active] for k in (-2, -1, 1, 2)]
+        moved = [
+            mechanism.solve_inverse(_twisted(poses, axis, k * h)).joints[:, : mechanism.n_active]
+            for k in (-2, -1, 1, 2)
+        ]
         slope = (moved[0] - 8.0 * moved[1] + 8.0 * moved[2] - moved[3]) / (12.0 * h)
         # Turns count per radian, shifts per metre, as in the references.
         scale = 1e3 if axis < 3 else 1.0
@@ -109,7 +116,9 @@ def test_joint_values_are_the_turns_between_placed_bodies(each_design, feasible_
         relative = np.swapaxes(R_p, 1, 2) @ R_c
         moved = relative @ np.swapaxes(relative[:1], 1, 2)  # the turn since home, in the parent's axes
         axis = np.asarray(joint.axis_parent)
-        skew = np.stack([moved[:, 2, 1] - moved[:, 1, 2], moved[:, 0, 2] - moved[:, 2, 0], moved[:, 1, 0] - moved[:, 0, 1]], -1)
+        skew = np.stack(
+            [moved[:, 2, 1] - moved[:, 1, 2], moved[:, 0, 2] - moved[:, 2, 0], moved[:, 1, 0] - moved[:, 0, 1]], -1
+        )
         turn = np.arctan2(skew @ axis / 2.0, (np.trace(moved, axis1=1, axis2=2) - 1.0) / 2.0)
         want = np.mod(values[:, k] - values[0, k] + np.pi, 2.0 * np.pi) - np.pi
         assert np.abs(turn - want).max() <= 1e-9, joint.name

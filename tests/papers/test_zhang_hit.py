@@ -23,9 +23,9 @@ def hit():
     return Hit({"parameters": HIT_REFERENCE})
 
 
-def _step(R=np.eye(3), p=(0.0, 0.0, 0.0)):
+def _step(R=None, p=(0.0, 0.0, 0.0)):
     T = np.eye(4)
-    T[:3, :3], T[:3, 3] = R, p
+    T[:3, :3], T[:3, 3] = np.eye(3) if R is None else R, p
     return T
 
 
@@ -53,8 +53,11 @@ def test_the_reference_pose_gives_the_reference_angles(hit):
     degrees = {name: np.degrees(inverse.joints[:, k]) for k, name in enumerate(names)}
     assert degrees["leg_1_theta_1"][0] == pytest.approx(135.572996, abs=5e-7)
     assert degrees["leg_1_theta_2"][0] == pytest.approx(44.427004, abs=5e-7)
-    for leg, alpha, t1, t2 in ((1, 3.935219, 119.912982, 52.582441), (2, -8.680571, 124.935201, 42.742895),
-                               (3, -2.481656, 115.027676, 21.135649)):
+    for leg, alpha, t1, t2 in (
+        (1, 3.935219, 119.912982, 52.582441),
+        (2, -8.680571, 124.935201, 42.742895),
+        (3, -2.481656, 115.027676, 21.135649),
+    ):
         assert degrees[f"leg_{leg}_pin"][1] == pytest.approx(alpha, abs=5e-7)
         assert degrees[f"leg_{leg}_theta_1"][1] == pytest.approx(t1, abs=5e-7)
         assert degrees[f"leg_{leg}_theta_2"][1] == pytest.approx(t2, abs=5e-7)
