@@ -21,12 +21,12 @@ from linkwright.designs.design import Design
 from linkwright.designs.language.errors import UnknownNameError, VacuousCheckError
 from linkwright.designs.language.poses import invert_pose
 from linkwright.designs.language.units import file_from_inside
-from linkwright.generator.assembly import AssembledBody, Assembly
+from linkwright.generator.assembly import Assembly
 
 from .contact.bodies import ContactBody, PairScan, build_contact_body, scan_pair
 from .findings import CheckResult, Finding, Severity
 from .interference import Interference, measure_interference
-from .mating import mating_faces
+from .jointed_faces import FaceTable
 
 Array = np.ndarray
 Progress = Callable[[int, int, str], None]
@@ -36,18 +36,15 @@ N_NEAREST = 10
 #: Share by which the least distance of a pair may exceed the exact one: at first, and for the pairs of that table.
 #: Distances below the required clearance are always exact.
 _ROUGH, _FINE = 0.05, 1e-3
-#: A joint's mating faces take one bit of a byte.
-_MAX_JOINTS = 8
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Pair:
-    """Two bodies (numbers in the mechanism's order), what their joints exempt, and what was found."""
+    """Two bodies (numbers in the mechanism's order) and what was found."""
 
     i: int
     j: int
-    exempt_i: Array | None
-    exempt_j: Array | None
+    is_jointed: bool
     allowance: float
     found: PairScan
     interference: Interference | None
@@ -140,13 +137,14 @@ def _scan_pairs(assembly: Assembly, pairs: list[tuple[int, int]], Ts: Array, pro
     """All pairs over all poses, on all cores; the order of the answers is that of the pairs."""
     names = [body.body.name for body in assembly.bodies]
     kinds = {body.body.kind: body for body in assembly.bodies}
-    done = itertools.count(1)
+    table, done = FaceTable(assembly), itertools.count(1)
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        built = dict(zip(kinds, pool.map(build_contact_body, kinds.values()), strict=True))
+        trees = pool.map(lambda body: build_contact_body(body, table.classes(body)), kinds.values())
+        built = dict(zip(kinds, trees, strict=True))
 
         def scan(pair: tuple[int, int]) -> _Pair:
-            result = _scan(assembly, built, Ts, *pair, _ROUGH)
+            result = _scan(assembly, built, table, Ts, *pair, _ROUGH)
             if progress is not None:
                 progress(next(done), len(pairs), f"{names[pair[0]]} / {names[pair[1]]}")
             return result
@@ -155,7 +153,7 @@ def _scan_pairs(assembly: Assembly, pairs: list[tuple[int, int]], Ts: Array, pro
             found = list(pool.map(scan, pairs))
             near = sorted((pair.found.scan.value for pair in found), key=float)[:N_NEAREST][-1]
             doubtful = [k for k, pair in enumerate(found) if 0.0 < pair.found.scan.value * (1.0 - _ROUGH) <= near]
-            again = pool.map(lambda k: _scan(assembly, built, Ts, *pairs[k], _FINE), doubtful)
+            again = pool.map(lambda k: _scan(assembly, built, table, Ts, *pairs[k], _FINE), doubtful)
             for k, pair in zip(doubtful, again, strict=True):
                 found[k] = pair
             return found
@@ -164,35 +162,20 @@ def _scan_pairs(assembly: Assembly, pairs: list[tuple[int, int]], Ts: Array, pro
             raise
 
 
-def _scan(assembly: Assembly, built: dict[str, ContactBody], Ts: Array, i: int, j: int, share: float) -> _Pair:
+def _scan(
+    assembly: Assembly, built: dict[str, ContactBody], table: FaceTable, Ts: Array, i: int, j: int, share: float
+) -> _Pair:
     body_i, body_j = assembly.bodies[i], assembly.bodies[j]
     a, b = built[body_i.body.kind], built[body_j.body.kind]
-    exempt_i, exempt_j = exempt_faces(assembly, body_i, body_j)
     Ts_ij = invert_pose(Ts[:, i]) @ Ts[:, j]
+    faces = table.between(body_i, body_j, Ts_ij)
     allowance = a.deviation + b.deviation
     need = assembly.design.clearance.minimum + allowance
-    found = scan_pair(a, b, Ts_ij, need=need, share=share, exempt_a=exempt_i, exempt_b=exempt_j)
+    found = scan_pair(a, b, Ts_ij, need=need, share=share, faces=faces)
     interference = None
     if found.is_colliding.any():
-        interference = measure_interference(body_i, body_j, a, b, Ts_ij, found, exempt_i, exempt_j)
-    return _Pair(i=i, j=j, exempt_i=exempt_i, exempt_j=exempt_j, allowance=allowance, found=found,
-                 interference=interference)
-
-
-def exempt_faces(assembly: Assembly, a: AssembledBody, b: AssembledBody) -> tuple[Array | None, Array | None]:
-    """For each face of two bodies the joints (bits) in which it runs; None, None if no joint holds the two together."""
-    names = {a.body.name, b.body.name}
-    joints = [joint for joint in assembly.design.mechanism.joints if {joint.parent, joint.child} == names]
-    if not joints:
-        return None, None
-    if len(joints) > _MAX_JOINTS:
-        raise ValueError(f"{a.body.name} and {b.body.name} share {len(joints)} joints; at most {_MAX_JOINTS} are known")
-    bits_a, bits_b = (np.zeros(sum(len(p.solid.surfaces) for p in body.parts), np.uint8) for body in (a, b))
-    for k, joint in enumerate(joints):
-        is_parent = joint.parent == a.body.name
-        bits_a |= mating_faces(a, joint, as_parent=is_parent) << np.uint8(k)
-        bits_b |= mating_faces(b, joint, as_parent=not is_parent) << np.uint8(k)
-    return bits_a, bits_b
+        interference = measure_interference(body_i, body_j, a, b, Ts_ij, found, faces)
+    return _Pair(i=i, j=j, is_jointed=faces is not None, allowance=allowance, found=found, interference=interference)
 
 
 def _judge(assembly: Assembly, pair: _Pair, poses: Array, Ts: Array) -> list[Finding]:
@@ -217,8 +200,8 @@ def _judge(assembly: Assembly, pair: _Pair, poses: Array, Ts: Array) -> list[Fin
     n_near = int((scan.values < least + pair.allowance).sum())
     return [Finding(
         rule="clearance", severity=Severity.ERROR, subject=names, pose=_shown(design, poses[scan.pose]),
-        message=f"{names[0]} and {names[1]} come within {pair.clearance:.4g} mm ({scan.value:.4g} mm between meshes, less "
-                f"{pair.allowance:g} mm that these may lie off the solids); {least:g} mm are asked for, and "
+        message=f"{names[0]} and {names[1]} come within {pair.clearance:.4g} mm ({scan.value:.4g} mm between meshes, "
+                f"less {pair.allowance:g} mm that these may lie off the solids); {least:g} mm are asked for, and "
                 f"{n_near} of {len(poses)} poses are nearer",
         measured=pair.clearance, limit=least, unit="mm", location=_location(pair, Ts), key="clearance.minimum_mm",
         suggestion=f"widen the gap by {least - pair.clearance:.3g} mm, shrink the workspace, or ask for less; a "
@@ -249,7 +232,7 @@ def _facts(assembly: Assembly, scanned: list[_Pair], poses: Array, Ts: Array, *,
     """What is worth keeping even when nothing is wrong; the nearest pairs first."""
     design = assembly.design
     known = [pair for pair in scanned if pair.found.scan.pose >= 0]
-    nearest = sorted(known, key=lambda pair: (pair.clearance, -(pair.interference.volume if pair.interference else 0.0)))
+    nearest = sorted(known, key=lambda pair: (pair.clearance, -pair.interference.volume if pair.interference else 0.0))
     rows = [{
         "pair": [assembly.bodies[pair.i].body.name, assembly.bodies[pair.j].body.name],
         "clearance_mm": pair.clearance,
@@ -269,6 +252,6 @@ def _facts(assembly: Assembly, scanned: list[_Pair], poses: Array, Ts: Array, *,
         "unreachable_poses": n_unreachable,
         "pairs": len(scanned),
         "colliding_pairs": sum(pair.interference is not None for pair in scanned),
-        "jointed_pairs": sum(pair.exempt_i is not None for pair in scanned),
+        "jointed_pairs": sum(pair.is_jointed for pair in scanned),
         "allowed": [{"pair": list(a.pair), "reason": a.reason} for a in design.allowed],
     }

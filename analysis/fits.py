@@ -82,16 +82,17 @@ def _overlaps(assembly: Assembly, body: AssembledBody, notebook: Notebook) -> li
         findings.append(Finding(
             rule="part-overlap", severity=Severity.ERROR,
             subject=(body.body.kind, a.part.name, b.part.name),
-            message=f"{body.body.kind}: {a.part.name} and {b.part.name} share {volume:.4g} mm3; parts of one body may touch, "
-                    "not overlap",
-            measured=volume, limit=LEAST_OVERLAP, unit="mm3", location=(float(point[0]), float(point[1]), float(point[2])),
+            message=f"{body.body.kind}: {a.part.name} and {b.part.name} share {volume:.4g} mm3; parts of one body may "
+                    "touch, not overlap",
+            measured=volume, limit=LEAST_OVERLAP, unit="mm3",
+            location=(float(point[0]), float(point[1]), float(point[2])),
             suggestion="move one of them, or cut the room for it out of the other",
         ))
     return findings
 
 
 def _box(assembled: AssembledPart) -> tuple[Array, Array]:
-    """A box around a part in its body's axes; corners of the mesh, which the solid passes by less than its deviation."""
+    """A box around a part in its body's axes: that of its mesh, which the solid passes by less than the deviation."""
     points = transform_points(assembled.T_body_part, assembled.solid.mesh.vertices)
     return points.min(axis=0), points.max(axis=0)
 
@@ -146,11 +147,11 @@ def _fit_findings(joint: Joint, gap: float | None) -> list[Finding]:
     subject: tuple[str, ...] = (joint.name, joint.parent, joint.child)
     common: dict[str, Any] = {"rule": "fit", "severity": Severity.ERROR, "subject": subject, "unit": "mm"}
     if gap is None:
-        return [Finding(message=f"{joint.name}: {joint.parent} or {joint.child} has no face that runs in this joint, so "
-                        "nothing holds it", suggestion="mark the pin, bearing, ball or seat with runs_in_joint, and place it "
-                        "on the joint's axis", **common)]
+        return [Finding(message=f"{joint.name}: {joint.parent} or {joint.child} has no face that runs in this joint, "
+                        "so nothing holds it", suggestion="mark the pin, bearing, ball or seat with runs_in_joint, and "
+                        "place it on the joint's axis", **common)]
     if gap > TOUCH:
         return []
-    return [Finding(message=f"{joint.name}: the faces of {joint.parent} and {joint.child} that run on each other touch; a "
-                    "running fit needs play", measured=gap, limit=TOUCH, suggestion="make the bore larger or the pin "
-                    "smaller", **common)]
+    return [Finding(message=f"{joint.name}: the faces of {joint.parent} and {joint.child} that run on each other "
+                    "touch; a running fit needs play", measured=gap, limit=TOUCH,
+                    suggestion="make the bore larger or the pin smaller", **common)]

@@ -14,6 +14,7 @@ from linkwright.generator.assembly import AssembledBody
 from .contact.bodies import ContactBody, PairScan
 from .contact.crossings import find_crossings
 from .contact.overlap import Overlap, build_manifold, compute_overlap
+from .jointed_faces import JointedFaces
 
 Array = np.ndarray
 
@@ -48,7 +49,7 @@ class Interference:
 
 def measure_interference(
     body_a: AssembledBody, body_b: AssembledBody, a: ContactBody, b: ContactBody, Ts_ab: Array, found: PairScan,
-    exempt_a: Array | None, exempt_b: Array | None,
+    faces: JointedFaces | None,
 ) -> Interference:
     """The worst overlap among up to `N_EXAMINED` of the colliding poses.
 
@@ -59,13 +60,14 @@ def measure_interference(
         body_a, body_b, a, b: the bodies, as assembled and as the engine takes them.
         Ts_ab: poses of B seen from A, shape (n, 4, 4) [mm].
         found: what the scan of these poses said.
-        exempt_a, exempt_b: as given to that scan.
+        faces: what the joints of the two say, as given to that scan.
     """
     colliding = np.flatnonzero(found.is_colliding)
-    chosen = colliding[np.unique(np.linspace(0, len(colliding) - 1, min(N_EXAMINED, len(colliding))).round().astype(int))]
+    spread = np.linspace(0, len(colliding) - 1, min(N_EXAMINED, len(colliding)))
+    chosen = colliding[np.unique(spread.round().astype(int))]
     worst: tuple[float, int, tuple[int, int], Overlap] | None = None
     for pose in chosen.tolist():
-        pairs = _colliding_parts(a, b, Ts_ab[pose], pose, found, exempt_a, exempt_b)
+        pairs = _colliding_parts(a, b, Ts_ab[pose], pose, found, faces)
         overlaps = {pair: _overlap(body_a, body_b, *pair, Ts_ab[pose]) for pair in pairs}
         if not overlaps:
             continue
@@ -85,12 +87,12 @@ _NOTHING = Overlap(volume=0.0, centre=None)
 
 
 def _colliding_parts(
-    a: ContactBody, b: ContactBody, T_ab: Array, pose: int, found: PairScan, exempt_a: Array | None,
-    exempt_b: Array | None,
+    a: ContactBody, b: ContactBody, T_ab: Array, pose: int, found: PairScan, faces: JointedFaces | None
 ) -> set[tuple[int, int]]:
     """Pairs of parts whose faces cross, and a swallowed part with every part of the body that holds it."""
-    faces = find_crossings(a.tree, b.tree, T_ab, exempt_a=exempt_a, exempt_b=exempt_b)
-    pairs = {(int(a.part_of_face[i]), int(b.part_of_face[j])) for i, j in faces}
+    exempt_a, exempt_b = (faces.exempt_a, faces.exempt_b) if faces is not None else (None, None)
+    crossing = find_crossings(a.tree, b.tree, T_ab, exempt_a=exempt_a, exempt_b=exempt_b)
+    pairs = {(int(a.part_of_face[i]), int(b.part_of_face[j])) for i, j in crossing}
     if found.swallowed_b[pose] >= 0:
         pairs |= {(i, int(found.swallowed_b[pose])) for i in range(len(a.anchors))}
     if found.swallowed_a[pose] >= 0:

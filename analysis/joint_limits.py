@@ -8,46 +8,32 @@ the clearance check.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from linkwright.designs.language.errors import KinematicsError, VacuousCheckError
+from linkwright.designs.language.errors import VacuousCheckError
 from linkwright.designs.language.joints import Joint, JointKind
-from linkwright.designs.language.poses import invert_pose, transform_points, turn_about
+from linkwright.designs.language.poses import invert_pose, transform_points
 from linkwright.designs.language.units import DEG
-from linkwright.generator.assembly import Assembly, AssembledBody
+from linkwright.generator.assembly import AssembledBody, Assembly
 from linkwright.generator.store import Store
 
 from .findings import CheckResult, Finding, Severity
-from .notebook import Notebook, evidence_of_body, evidence_of_joint, key_of, rounded
-from .travel import Passage, Surroundings, Travel, build_passage, build_surroundings
+from .joint_travel import JointTravel, check_closure, measure_joint
+from .notebook import Notebook, evidence_of_body, evidence_of_shape, key_of, rounded
+from .travel import Surroundings, Travel, build_passage, build_surroundings
 
 Array = np.ndarray
 Progress = Callable[[int, int, str], None]
 
-#: To which a contact is found: a hundredth of a degree, and a two-hundredth of a millimetre.
-TURN_RESOLUTION, SLIDE_RESOLUTION = 0.01 * DEG, 0.005
 #: Azimuths towards which a ball joint leans.
 N_AZIMUTHS = 24
-#: A mechanism's own joint axes must meet within this at home [mm, and parts of a unit vector].
-_CLOSURE = 1e-6
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class JointTravel:
-    """What was measured on one joint.
-
-    Attributes:
-        travels: revolute, prismatic: down and up from home; else one per azimuth.
-        azimuths: of a ball joint's leans, about the parent's axis [rad]; empty for other joints.
-    """
-
-    travels: tuple[Travel, ...]
-    azimuths: tuple[float, ...] = ()
+#: Derived number under which a mechanism says what its ball joints' cone should be by a formula [rad].
+CONE_KEY = "cone_half_angle"
+#: More than this between formula and solids is worth a word [deg].
+FORMULA_SLACK = 0.05
 
 
 def measure_joint_limits(
@@ -63,7 +49,8 @@ def measure_joint_limits(
 
     Returns:
         facts["limits"]: per joint lower, upper [rad or mm], the declared ones, whether it is unlimited (no contact
-        within half a turn either way) and what stops it. facts["cones"]: per ball joint its leans by azimuth [deg].
+        within half a turn either way) and what stops it. facts["cones"]: per ball joint its leans by azimuth [deg], and
+        what the mechanism's formula says, if it has one.
 
     Raises:
         VacuousCheckError: the mechanism has no joints.
@@ -74,6 +61,8 @@ def measure_joint_limits(
         raise VacuousCheckError(f"{assembly.design.name}: no joints to measure; a mechanism has at least one")
     bench = _Bench(assembly, store)
     values = mechanism.solve_inverse(mechanism.home[None]).joints[0]
+    derived = mechanism.derived_numbers()
+    formula = derived[CONE_KEY][0] / DEG if CONE_KEY in derived else None
     limits: dict[str, Any] = {}
     cones: dict[str, Any] = {}
     findings: list[Finding] = []
@@ -83,8 +72,9 @@ def measure_joint_limits(
         measured = bench.measure(joint, n_azimuths)
         limits[joint.name] = _limits_of(joint, measured, float(value), assembly)
         if measured.azimuths:
-            cones[joint.name] = {"azimuths": [a / DEG for a in measured.azimuths],
-                                 "tilts": [t.extent / DEG for t in measured.travels]}
+            tilts = [t.extent / DEG for t in measured.travels]
+            cones[joint.name] = {"azimuths": [a / DEG for a in measured.azimuths], "tilts": tilts, "formula": formula}
+            findings += _formula_findings(joint, min(tilts), formula)
         findings += _findings_of(joint, measured, limits[joint.name], bench)
     if progress is not None:
         progress(len(mechanism.joints), len(mechanism.joints), "")
@@ -109,17 +99,20 @@ class _Bench:
         """What was measured on this joint, or on one that equals it."""
         parent, child = self.assembly.body(joint.parent), self.assembly.body(joint.child)
         T = invert_pose(self.poses[joint.parent]) @ self.poses[joint.child]
-        _check_closure(joint, T)
-        key = key_of("travel", evidence_of_body(parent), evidence_of_body(child), evidence_of_joint(joint), rounded(T),
+        check_closure(joint, T)
+        # All is told as the child sees it at home, so that legs around one plate have one measurement.
+        T_back = invert_pose(T)
+        key = key_of("travel", evidence_of_shape(parent, T_back), evidence_of_body(child), joint.kind.value,
+                     rounded(joint.p_child), rounded(joint.axis_child), rounded(T_back[:3, :3] @ joint.axis_parent),
                      n_azimuths)
         facts = self._notebook.recall(key)
         if facts is None:
             self.n_measured += 1
             where = f"{self.assembly.design.name}: {joint.name}"
             passage = build_passage(self._look_at(parent), self._look_at(child), joint, where)
-            facts = _facts_of(measure_joint(passage, joint, T, n_azimuths))
+            facts = _facts_of(measure_joint(passage, joint, T, n_azimuths), parent, T_back)
             self._notebook.note(key, facts)
-        return _travel_of(facts)
+        return _travel_of(facts, parent, T)
 
     def _look_at(self, body: AssembledBody) -> Surroundings:
         if body.body.kind not in self._seen:
@@ -127,91 +120,31 @@ class _Bench:
         return self._seen[body.body.kind]
 
 
-def measure_joint(passage: Passage, joint: Joint, T_parent_child: Array, n_azimuths: int = N_AZIMUTHS) -> JointTravel:
-    """How far one joint goes.
-
-    Args:
-        passage: of its child past its parent.
-        joint: the joint.
-        T_parent_child: pose of the child seen from the parent at home, shape (4, 4) [mm].
-        n_azimuths: towards which a ball joint leans.
-    """
-    at, along = np.array(joint.p_parent), np.array(joint.axis_parent) / np.linalg.norm(joint.axis_parent)
-    corners = transform_points(T_parent_child, passage.child.corners) - at
-    if joint.kind is JointKind.PRISMATIC:
-        def slide(sign: float) -> Callable[[float], Array]:
-            return lambda way: _shift(sign * way * along) @ T_parent_child
-        end = 2.0 * (passage.parent.tree.radius + passage.child.tree.radius)
-        return JointTravel(travels=tuple(passage.measure(slide(s), rate=1.0, end=end, resolution=SLIDE_RESOLUTION)
-                                         for s in (-1.0, 1.0)))
-
-    def turn(axis: Array, start: Array) -> Callable[[float], Array]:
-        return lambda angle: turn_about(at, axis, angle) @ start
-
-    if joint.kind is JointKind.REVOLUTE:
-        rate = float(np.linalg.norm(np.cross(corners, along), axis=1).max()) + passage.child.deviation
-        return JointTravel(travels=tuple(passage.measure(turn(s * along, T_parent_child), rate=rate, end=math.pi,
-                                                         resolution=TURN_RESOLUTION) for s in (-1.0, 1.0)))
-    start, azimuths = _aligned(joint, T_parent_child), tuple(k * math.tau / n_azimuths for k in range(n_azimuths))
-    rate = float(np.linalg.norm(corners, axis=1).max()) + passage.child.deviation
-    axes = [lean_axis(along, azimuth) for azimuth in azimuths]
-    return JointTravel(azimuths=azimuths, travels=tuple(
-        passage.measure(turn(axis, start), rate=rate, end=math.pi, resolution=TURN_RESOLUTION) for axis in axes))
+def _facts_of(measured: JointTravel, parent: AssembledBody, T_child_parent: Array) -> dict[str, Any]:
+    """As the child sees it at home: the parent's part by its middle, for another leg meets a part of another number."""
+    rows = []
+    for t in measured.travels:
+        middle = _middles(parent, T_child_parent)[t.parts[0]].tolist() if t.parts[0] >= 0 else None
+        rows.append([t.extent, t.is_stopped, middle, t.parts[1],
+                     transform_points(T_child_parent, np.array(t.point)[None])[0].tolist()])
+    return {"azimuths": list(measured.azimuths), "travels": rows}
 
 
-def lean_axis(along: Array, azimuth: float) -> Array:
-    """The axis about which to turn so that `along` leans towards an azimuth [rad], which counts from the parent's x.
-
-    From its y where `along` is its x.
-    """
-    x = np.array([1.0, 0.0, 0.0]) if abs(along[0]) < 0.9 else np.array([0.0, 1.0, 0.0])
-    x = x - np.dot(x, along) * along
-    x /= np.linalg.norm(x)
-    return -math.sin(azimuth) * x + math.cos(azimuth) * np.cross(along, x)
-
-
-def _aligned(joint: Joint, T: Array) -> Array:
-    """The child's pose with its axis along the parent's, by the shortest turn from home about the ball's centre."""
-    along, here = np.array(joint.axis_parent), T[:3, :3] @ np.array(joint.axis_child)
-    axis = np.cross(here, along)
-    if np.linalg.norm(axis) < 1e-12:
-        if np.dot(here, along) > 0.0:
-            return T
-        axis = lean_axis(along, 0.0)
-    angle = math.atan2(float(np.linalg.norm(np.cross(here, along))), float(np.dot(here, along)))
-    return turn_about(np.array(joint.p_parent), axis, angle) @ T
+def _travel_of(facts: Mapping[str, Any], parent: AssembledBody, T_parent_child: Array) -> JointTravel:
+    travels = []
+    for extent, is_stopped, middle, part, point in facts["travels"]:
+        x, y, z = transform_points(T_parent_child, np.array(point)[None])[0].tolist()
+        number = -1
+        if middle is not None:
+            apart = _middles(parent, invert_pose(T_parent_child)) - np.array(middle)
+            number = int(np.argmin(np.linalg.norm(apart, axis=1)))
+        travels.append(Travel(extent=extent, is_stopped=is_stopped, parts=(number, part), point=(x, y, z)))
+    return JointTravel(travels=tuple(travels), azimuths=tuple(facts["azimuths"]))
 
 
-def _shift(p: Array) -> Array:
-    T = np.eye(4)
-    T[:3, 3] = p
-    return T
-
-
-def _check_closure(joint: Joint, T: Array) -> None:
-    apart = float(np.linalg.norm(T[:3, :3] @ np.array(joint.p_child) + T[:3, 3] - np.array(joint.p_parent)))
-    if joint.kind is JointKind.PRISMATIC:
-        offset = T[:3, :3] @ np.array(joint.p_child) + T[:3, 3] - np.array(joint.p_parent)
-        apart = float(np.linalg.norm(np.cross(offset, joint.axis_parent)))
-    if apart > _CLOSURE:
-        raise KinematicsError(f"{joint.name}: at home {joint.child} misses {joint.parent} by {apart:.4g} mm at this joint; "
-                              f"place_bodies and joints must agree within {_CLOSURE:g} mm")
-    if joint.kind in (JointKind.REVOLUTE, JointKind.PRISMATIC):
-        skew = float(np.linalg.norm(T[:3, :3] @ np.array(joint.axis_child) - np.array(joint.axis_parent)))
-        if skew > _CLOSURE:
-            raise KinematicsError(f"{joint.name}: at home the axes of {joint.child} and {joint.parent} differ by {skew:.4g} "
-                                  f"(sine); they must agree within {_CLOSURE:g}")
-
-
-def _facts_of(measured: JointTravel) -> dict[str, Any]:
-    return {"azimuths": list(measured.azimuths),
-            "travels": [[t.extent, t.is_stopped, list(t.parts), list(t.point)] for t in measured.travels]}
-
-
-def _travel_of(facts: Mapping[str, Any]) -> JointTravel:
-    return JointTravel(azimuths=tuple(facts["azimuths"]), travels=tuple(
-        Travel(extent=extent, is_stopped=stopped, parts=(parts[0], parts[1]), point=(point[0], point[1], point[2]))
-        for extent, stopped, parts, point in facts["travels"]))
+def _middles(body: AssembledBody, T_ref_body: Array) -> Array:
+    """Centres of a body's parts in a reference frame, shape (n_parts, 3) [mm]."""
+    return np.array([(T_ref_body @ a.T_body_part @ [*a.solid.centre, 1.0])[:3] for a in body.parts])
 
 
 def _limits_of(joint: Joint, measured: JointTravel, value: float, assembly: Assembly) -> dict[str, Any]:
@@ -236,6 +169,18 @@ def _limits_of(joint: Joint, measured: JointTravel, value: float, assembly: Asse
             "stopped_below_by": stops[0], "stopped_above_by": stops[1]}
 
 
+def _formula_findings(joint: Joint, measured: float, formula: float | None) -> list[Finding]:
+    if formula is None or abs(measured - formula) <= FORMULA_SLACK:
+        return []
+    return [Finding(
+        rule="cone-formula", severity=Severity.WARNING, subject=(joint.name, joint.parent, joint.child),
+        message=f"{joint.name} leans by {measured:.3f} deg on its solids, but by {formula:.3f} deg according to the "
+                "formula",
+        measured=measured, limit=formula, unit="deg",
+        suggestion="look at countersink, shoulder, root fillet and ring edge: one of them stops the bar before the rim",
+    )]
+
+
 def _findings_of(joint: Joint, measured: JointTravel, limits: Mapping[str, Any], bench: _Bench) -> list[Finding]:
     unit = joint.unit
     scale = 1.0 if unit == "mm" else DEG
@@ -251,11 +196,11 @@ def _findings_of(joint: Joint, measured: JointTravel, limits: Mapping[str, Any],
         point = transform_points(bench.poses[joint.parent], np.array(travel.point)[None])[0]
         findings.append(Finding(
             rule="joint-limit", severity=Severity.ERROR, subject=(joint.name, joint.parent, joint.child),
-            message=f"{joint.name} is declared to go {'down' if sign < 0 else 'up'} to {declared / scale:.3f} {unit}, but its "
-                    f"solids touch at {found / scale:.3f} {unit}" + (f" ({by})" if by else ""),
+            message=f"{joint.name} is declared to go {'down' if sign < 0 else 'up'} to {declared / scale:.3f} {unit}, "
+                    f"but its solids touch at {found / scale:.3f} {unit}" + (f" ({by})" if by else ""),
             measured=found / scale, limit=declared / scale, unit=unit,
             location=(float(point[0]), float(point[1]), float(point[2])),
-            suggestion=f"declare {'at least' if sign < 0 else 'at most'} {found / scale:.2f} {unit}, or take metal away "
-                       "where they touch",
+            suggestion=f"declare {'at least' if sign < 0 else 'at most'} {found / scale:.2f} {unit}, or take metal "
+                       "away where they touch",
         ))
     return findings

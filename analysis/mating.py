@@ -100,7 +100,8 @@ def body_triangles(body: AssembledBody) -> tuple[Array, Array, Array]:
     """The surface of a body as triangles in its own axes.
 
     Returns:
-        corners, shape (m, 3, 3) [mm]; number of the face in the body, shape (m,), int32; number of the part, (m,), int32.
+        corners, shape (m, 3, 3) [mm]; number of the face in the body, shape (m,), int32; number of the part, shape
+        (m,), int32.
     """
     corners, groups, parts, first = [], [], [], 0
     for i, assembled in enumerate(body.parts):

@@ -18,6 +18,7 @@ import numpy as np
 from linkwright.designs.language.joints import Joint
 from linkwright.generator.assembly import AssembledBody
 from linkwright.generator.store import Store
+from linkwright.generator.surfaces import Surface, SurfaceKind
 
 Array = np.ndarray
 
@@ -58,7 +59,7 @@ class Notebook:
             try:
                 with os.fdopen(handle, "w", encoding="utf-8") as file:
                     json.dump({"sum": _checksum(key, facts), "facts": facts}, file, allow_nan=False)
-                os.replace(aside, target)
+                Path(aside).replace(target)
             except BaseException:
                 Path(aside).unlink(missing_ok=True)
                 raise
@@ -85,6 +86,41 @@ def evidence_of_body(body: AssembledBody, T_ref_body: Array | None = None) -> li
     """What a body looks like from a reference frame: solids, places and roles of its parts, without any names."""
     T = np.eye(4) if T_ref_body is None else T_ref_body
     return [[a.solid.key, rounded(T @ a.T_body_part), a.part.runs_in_joint] for a in body.parts]
+
+
+def evidence_of_shape(body: AssembledBody, T_ref_body: Array) -> list[Any]:
+    """What a body looks like from a reference frame whatever its own frame is: equal for a body turned into itself.
+
+    A part is told by its volume, area, centre and inertia, and by the surfaces that its faces lie on, so a plate with
+    three equal arms looks the same from each of them, which its place and its numbers do not say.
+    """
+    parts = []
+    for a in body.parts:
+        T = T_ref_body @ a.T_body_part
+        R, solid = T[:3, :3], a.solid
+        centre, inertia = R @ solid.centre + T[:3, 3], R @ solid.inertia @ R.T
+        surfaces = sorted(_evidence_of_surface(surface, T) for surface in solid.surfaces)
+        scale = max(1.0, float(np.abs(inertia).max()))  # rounding of a large inertia must not look like a change
+        parts.append([_coarse([solid.volume, solid.area, scale]), _coarse(centre), _coarse(inertia / scale), surfaces])
+    return sorted(parts)
+
+
+def _evidence_of_surface(surface: Surface, T: Array) -> list[Any]:
+    """A surface without what is arbitrary in its description: the point on a line, the sense of an axis."""
+    axis, point = T[:3, :3] @ np.array(surface.axis), T[:3, :3] @ np.array(surface.point) + T[:3, 3]
+    along = np.outer(axis, axis)
+    if surface.kind is SurfaceKind.PLANE:
+        return [surface.kind.value, _coarse([*axis, float(axis @ point)])]
+    if surface.kind in (SurfaceKind.CYLINDER, SurfaceKind.CONE):
+        return [surface.kind.value, _coarse([surface.radius, *along.reshape(-1), *(point - along @ point)])]
+    if surface.kind is SurfaceKind.SPHERE:
+        return [surface.kind.value, _coarse([surface.radius, *point])]
+    return [surface.kind.value, _coarse([surface.radius, *along.reshape(-1), *point])]
+
+
+def _coarse(numbers: Any) -> list[int]:
+    """Numbers in whole grains of 1e-6, to which solids that were turned and turned back agree."""
+    return [round(float(x) * 1e6) for x in np.asarray(numbers, dtype=float).reshape(-1)]
 
 
 def evidence_of_joint(joint: Joint) -> list[Any]:

@@ -12,7 +12,7 @@ Array = np.ndarray
 
 
 def sample_box(lower: Array, upper: Array, n: int, seed: int) -> Array:
-    """n poses of a box, the same for the same seed.
+    """Poses of a box, n of them, the same for the same seed.
 
     The first half (rounded up) is uniform inside. The rest lies on the border, where mechanisms meet their limits:
     every corner once, as long as corners are at most half of the rest; then poses of which a number of coordinates,

@@ -18,10 +18,10 @@ from .mating import body_triangles, steady_faces
 Array = np.ndarray
 
 #: The pose of the child seen from the parent after a travel [rad or mm].
-Path = Callable[[float], Array]
+Motion = Callable[[float], Array]
 
-#: A mesh search takes no longer steps than this share of a turn, so that the search looks no farther than it must [rad].
-_LONGEST_STEP = 0.1
+#: How far a search looks at first [mm].
+_FIRST_LOOK = 0.5
 #: Exact gaps from here on need not be known [mm].
 _EXACT_MARGIN = 0.25
 
@@ -84,7 +84,7 @@ class Passage:
     exempt_child: Array
     where: str
 
-    def measure(self, path: Path, *, rate: float, end: float, resolution: float) -> Travel:
+    def measure(self, path: Motion, *, rate: float, end: float, resolution: float) -> Travel:
         """How far the child gets.
 
         Args:
@@ -105,11 +105,11 @@ class Passage:
         extent = found.extent if settled is None else settled
         return Travel(extent=extent, is_stopped=True, parts=found.parts, point=found.point)
 
-    def _search(self, path: Path, rate: float, end: float, resolution: float) -> Travel:
+    def _search(self, path: Motion, rate: float, end: float, resolution: float) -> Travel:
         """Conservative advancement: the child cannot reach the parent before it has travelled distance / rate."""
-        travel, last, warm = 0.0, 0.0, (-1, -1)
+        travel, free, warm = 0.0, 0.0, (-1, -1)
         point: tuple[float, float, float] = (0.0, 0.0, 0.0)
-        cutoff = rate * max(_LONGEST_STEP, 0.05 * end)
+        cutoff = _FIRST_LOOK
         while True:
             near = compute_distance(self.parent.tree, self.child.tree, path(travel), cutoff=cutoff,
                                     exempt_a=self.exempt_parent, exempt_b=self.exempt_child,
@@ -119,10 +119,13 @@ class Passage:
             if near.point_a is not None:
                 point = tuple(float(x) for x in near.point_a)  # type: ignore[assignment]
             if near.value <= 0.0:
-                return Travel(extent=0.5 * (last + travel), is_stopped=True, parts=self._parts(warm), point=point)
+                return Travel(extent=0.5 * (free + travel), is_stopped=True, parts=self._parts(warm), point=point)
             if travel >= end:
                 return Travel(extent=end, is_stopped=False)
-            last, travel = travel, min(end, travel + max(near.value / rate, resolution))
+            # Looking far is dear where much is near: twice as far after a free look, else not as far as the last gap.
+            cutoff = 2.0 * cutoff if near.value >= cutoff else max(_FIRST_LOOK, 0.5 * near.value)
+            free = min(end, travel + near.value / rate)
+            travel = min(end, max(free, travel + resolution))
 
     def _parts(self, witness: tuple[int, int]) -> tuple[int, int]:
         if witness[0] < 0:
@@ -135,7 +138,9 @@ class Passage:
         return compute_gap(self.parent.faces, self.child.faces, T, self.exempt_parent, self.exempt_child,
                            margin=_EXACT_MARGIN, where=self.where)
 
-    def _settle(self, path: Path, start: float, near: float, rate: float, end: float, resolution: float) -> float | None:
+    def _settle(
+        self, path: Motion, start: float, near: float, rate: float, end: float, resolution: float
+    ) -> float | None:
         """Where the exact gap first vanishes, from a free start near the meshes' contact; None if it does not.
 
         Steps follow the gap's measured slope, never beyond a known contact; the last prediction is the answer once

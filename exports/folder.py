@@ -31,20 +31,35 @@ def whole_folder(out: Path, is_ours: Callable[[Path], bool]) -> Iterator[Path]:
     draft: Path | None = None
     try:
         refuse_foreign(out, is_ours)
-        made = _make_parents(out.parent)
-        draft = out.parent / f".{out.name}.{secrets.token_hex(4)}.draft"
-        draft.mkdir()
+        _make_parents(out.parent, made)
+        draft = _make_draft(out)
         yield draft
         refuse_foreign(out, is_ours)
         _swap(draft, out)
     except OSError as error:
         _withdraw(draft, made)
-        raise ReleaseError(
-            f"{out} cannot be written: {error.strerror or error}: {error.filename or out.parent}"
-        ) from error
+        raise _unwritable(out, error) from error
     except BaseException:
         _withdraw(draft, made)
         raise
+
+
+def prove_writable(out: Path) -> None:
+    """Find out before long work whether a folder can be made at `out`; leaves nothing there.
+
+    Raises:
+        ReleaseError: says why it cannot.
+    """
+    out = out.resolve()
+    made: list[Path] = []
+    draft: Path | None = None
+    try:
+        _make_parents(out.parent, made)
+        draft = _make_draft(out)
+    except OSError as error:
+        raise _unwritable(out, error) from error
+    finally:
+        _withdraw(draft, made)
 
 
 def refuse_foreign(out: Path, is_ours: Callable[[Path], bool]) -> None:
@@ -61,13 +76,22 @@ def refuse_foreign(out: Path, is_ours: Callable[[Path], bool]) -> None:
         raise ReleaseError(f"{out} holds files that no release has written; nothing was touched: choose another place")
 
 
-def _make_parents(folder: Path) -> list[Path]:
+def _unwritable(out: Path, error: OSError) -> ReleaseError:
+    return ReleaseError(f"{out} cannot be written: {error.strerror or error}: {error.filename or out.parent}")
+
+
+def _make_draft(out: Path) -> Path:
+    draft = out.parent / f".{out.name}.{secrets.token_hex(4)}.draft"
+    draft.mkdir()
+    return draft
+
+
+def _make_parents(folder: Path, made: list[Path]) -> None:
+    """Make what is missing and note each in `made`, so that it can be taken away even if the next one fails."""
     missing = [p for p in (folder, *folder.parents) if not p.exists()]
-    made = []
     for parent in reversed(missing):
         parent.mkdir()
         made.append(parent)
-    return made
 
 
 def _swap(draft: Path, out: Path) -> None:

@@ -184,7 +184,7 @@ def _actors(faces: Any, edges: Any, colour: tuple[float, float, float], T: np.nd
     body.SetMapper(faces)
     body.SetUserMatrix(matrix)
     surface = body.GetProperty()
-    surface.SetColor(colour)
+    surface.SetColor(*colour)
     surface.SetAmbient(0.25)
     surface.SetDiffuse(0.75)
     surface.SetSpecular(0.25)
@@ -193,7 +193,7 @@ def _actors(faces: Any, edges: Any, colour: tuple[float, float, float], T: np.nd
     outline = vtkActor()
     outline.SetMapper(edges)
     outline.SetUserMatrix(matrix)
-    outline.GetProperty().SetColor(_EDGE_COLOUR)
+    outline.GetProperty().SetColor(*_EDGE_COLOUR)
     outline.GetProperty().SetLineWidth(1.2 * _SUPERSAMPLING)
     outline.GetProperty().LightingOff()
     yield outline
@@ -213,8 +213,9 @@ def _floor(cloud: np.ndarray, size: float) -> Any:
     actor = vtkActor()
     actor.SetMapper(mapper)
     lower, upper = cloud.min(axis=0), cloud.max(axis=0)
-    actor.SetPosition(*(0.5 * (lower + upper))[:2], lower[2] - 1e-3 * size)
-    actor.GetProperty().SetColor(_PAPER)
+    middle = 0.5 * (lower + upper)
+    actor.SetPosition(middle[0], middle[1], lower[2] - 1e-3 * size)
+    actor.GetProperty().SetColor(*_PAPER)
     actor.GetProperty().LightingOff()
     return actor
 

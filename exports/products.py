@@ -107,9 +107,11 @@ def _distinct(candidates: Sequence[Sequence[str]]) -> list[str]:
 
 
 def _shared_words(names: Sequence[str]) -> str:
-    """The words that all names have at one place: lower_left, lower_right -> lower; leg_1_pin, leg_2_pin -> leg_pin."""
+    """The words that all names have at one place, without the numbers: leg_1_up_1_pin, leg_2_up_1_pin -> leg_up_pin."""
+    if len(set(names)) == 1:
+        return names[0]
     places = zip(*(name.split("_") for name in names), strict=False)
-    return "_".join(words[0] for words in places if len(set(words)) == 1)
+    return "_".join(words[0] for words in places if len(set(words)) == 1 and not words[0].isdigit())
 
 
 def slug(text: str) -> str:

@@ -14,13 +14,13 @@ from linkwright.analysis.findings import CheckResult, Finding, Report, Severity
 from linkwright.analysis.report import findings_json
 from linkwright.designs.catalogue import Entry
 from linkwright.designs.design import Design
-from linkwright.designs.language.errors import LinkwrightError, ReleaseError
+from linkwright.designs.language.errors import ReleaseError
 from linkwright.generator.assembly import Assembly, build_assembly
 from linkwright.generator.solids import build_solid
 from linkwright.generator.store import Store
 
 from .controller import Limits, mechanism_from_config, write_controller_config
-from .folder import refuse_foreign, whole_folder
+from .folder import prove_writable, refuse_foreign, whole_folder
 from .manifest import Manifest, manifest_of, read_manifest, write_manifest
 from .preview import check_egl, write_preview
 from .products import Product, products_of
@@ -83,20 +83,18 @@ def release(
     """
     out = Path(out)
     refuse_foreign(out.resolve(), is_release)
+    prove_writable(out)
     if design.outputs.preview:
         check_egl()
-    try:
-        with whole_folder(out, is_release) as draft:
-            assembly = build_assembly(design, store=store, progress=progress)
-            report = check_design(assembly, store=store, progress=progress)
-            if not report.passes(strict=strict):
-                raise _RefusedError(report)
-            report = _write_and_reread(_Draft(draft, assembly, report, store, entry), progress)
-            _write_json(findings_json(report, design, strict=strict), draft / FINDINGS)
-            manifest = manifest_of(assembly, report, draft, strict=strict)
-            write_manifest(manifest, draft)
-    except _RefusedError as refusal:
-        return ReleaseResult(path=out, report=refusal.report, manifest=None, written=False)
+    assembly = build_assembly(design, store=store, progress=progress)
+    report = check_design(assembly, store=store, progress=progress)
+    if not report.passes(strict=strict):
+        return ReleaseResult(path=out, report=report, manifest=None, written=False)
+    with whole_folder(out, is_release) as draft:
+        report = _write_and_reread(_Draft(draft, assembly, report, store, entry), progress)
+        _write_json(findings_json(report, design, strict=strict), draft / FINDINGS)
+        manifest = manifest_of(assembly, report, draft, strict=strict)
+        write_manifest(manifest, draft)
     return ReleaseResult(path=out, report=report, manifest=manifest, written=True)
 
 
@@ -116,14 +114,6 @@ def measured_limits(report: Report) -> Limits:
             limits: Mapping[str, Mapping[str, float]] = result.facts["limits"]
             return {name: (float(pair["lower"]), float(pair["upper"])) for name, pair in limits.items()}
     return {}
-
-
-class _RefusedError(LinkwrightError):
-    """The design failed its checks: carries the report out of the half-made folder."""
-
-    def __init__(self, report: Report) -> None:
-        super().__init__("the design fails its checks")
-        self.report = report
 
 
 @dataclass(frozen=True, slots=True)

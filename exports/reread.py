@@ -26,7 +26,7 @@ class RereadInstance:
         T_base_part: its pose in the base, shape (4, 4) [mm].
         volume: [mm3]; centre: of mass, in the base, shape (3,) [mm].
         n_solids: how many solids its shape holds.
-        colour: linear RGB, or None.
+        colour: sRGB, or None.
     """
 
     path: tuple[str, ...]
@@ -125,7 +125,7 @@ def reread_volume(step_path: Path) -> tuple[float, int]:
     import cadquery as cq
 
     try:
-        solids = cq.importers.importStep(str(step_path)).solids().vals()
+        solids: list[Any] = cq.importers.importStep(str(step_path)).solids().vals()
     except ValueError as error:
         raise ReleaseError(f"{step_path.name}: cadquery cannot read it back: {error}") from error
     return float(sum(solid.Volume() for solid in solids)), len(solids)

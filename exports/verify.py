@@ -124,54 +124,48 @@ def check_stls(paths: Mapping[Path, Product], deviation: float) -> CheckResult:
         VacuousCheckError: there are no files.
     """
     _refuse_none(paths, "STL files")
-    import trimesh
-
     findings: list[Finding] = []
     volume = Worst()
     for path, product in paths.items():
-        solid, subject = product.solid, (product.name,)
-        findings += _stl_size(path, subject)
-        try:
-            mesh = trimesh.load_mesh(path, file_type="stl")
-        except (ValueError, IndexError, OSError) as error:
-            findings.append(_error("stl-reread", path, subject, f"trimesh cannot read it: {error}"))
-            continue
-        if len(mesh.faces) == 0:
-            findings.append(_error("stl-reread", path, subject, f"the mesh of {product.name} is empty"))
-            continue
-        claims = {
-            "closed": mesh.is_watertight,
-            "oriented one way": mesh.is_winding_consistent,
-            "oriented outwards": mesh.volume > 0.0,
-            "free of facets without area": bool(np.all(mesh.area_faces > 0.0)),
-        }
-        broken = [claim for claim, holds in claims.items() if not holds]
-        if broken:
-            findings.append(
-                _error("stl-reread", path, subject, f"the mesh of {product.name} is not {', not '.join(broken)}")
-            )
-            continue
-        volume = volume.or_(abs(mesh.volume - solid.volume) / solid.volume, product.name)
-        # A mesh whose every point lies within the deviation encloses at most area times deviation more or less.
-        limit = solid.area * deviation
-        if not abs(mesh.volume - solid.volume) <= limit:
-            findings.append(
-                _error(
-                    "stl-reread",
-                    path,
-                    subject,
-                    f"the mesh of {product.name} encloses {mesh.volume:.6g} mm3, its solid {solid.volume:.6g} mm3",
-                    abs(mesh.volume - solid.volume),
-                    limit,
-                    "mm3",
-                )
-            )
+        broken, share = _stl_findings(path, product, deviation)
+        findings += broken
+        volume = volume.or_(share, product.name)
     return CheckResult(
         check="stl-reread",
         looked_at={"meshes": len(paths)},
         findings=tuple(findings),
         facts={"largest_volume_share": volume.value},
     )
+
+
+def _stl_findings(path: Path, product: Product, deviation: float) -> tuple[list[Finding], float]:
+    """What is wrong with one file, and by which share its volume differs from the solid's (0 if it has none)."""
+    import trimesh
+
+    solid, subject, rule = product.solid, (product.name,), "stl-reread"
+    size = _stl_size(path, subject)
+    try:
+        mesh = trimesh.load_mesh(path, file_type="stl")
+    except (ValueError, IndexError, OSError) as error:
+        return [*size, _error(rule, path, subject, f"trimesh cannot read it: {error}")], 0.0
+    if len(mesh.faces) == 0:
+        return [*size, _error(rule, path, subject, f"the mesh of {product.name} is empty")], 0.0
+    claims = {
+        "closed": mesh.is_watertight,
+        "oriented one way": mesh.is_winding_consistent,
+        "oriented outwards": mesh.volume > 0.0,
+        "free of facets without area": bool(np.all(mesh.area_faces > 0.0)),
+    }
+    if broken := [claim for claim, holds in claims.items() if not holds]:
+        text = f"the mesh of {product.name} is not {', not '.join(broken)}"
+        return [*size, _error(rule, path, subject, text)], 0.0
+    off = float(abs(mesh.volume - solid.volume))
+    # A mesh whose every point lies within the deviation encloses at most area times deviation more or less.
+    limit = solid.area * deviation
+    if off > limit:
+        text = f"the mesh of {product.name} encloses {mesh.volume:.6g} mm3, its solid {solid.volume:.6g} mm3"
+        size = [*size, _error(rule, path, subject, text, off, limit, "mm3")]
+    return list(size), off / solid.volume
 
 
 def check_config(path: Path, design: Design, entry: Entry | None = None) -> CheckResult:
@@ -185,40 +179,26 @@ def check_config(path: Path, design: Design, entry: Entry | None = None) -> Chec
     config = read_config(path)
     findings: list[Finding] = []
     if config["design_hash"] != design.hash:
-        findings.append(
-            _error(
-                "config-reread",
-                path,
-                (design.name,),
-                f"design_hash is {config['design_hash']}, the design's is {design.hash}",
-            )
-        )
-    deviation = Worst()
+        text = f"design_hash is {config['design_hash']}, the design's is {design.hash}"
+        findings.append(_error("config-reread", path, (design.name,), text))
+    stated: list[tuple[str, float]] = []
     try:
         mechanism = mechanism_from_config(path, entry)
         stated = [*mechanism_numbers(mechanism), *declared_numbers(mechanism), *home_numbers(mechanism)]
     except LinkwrightError as error:
-        stated = []
         findings.append(_error("config-reread", path, (design.name,), f"no mechanism can be made from it: {error}"))
+    deviation = Worst()
     for key, value in stated:
         written = config.get(key)
         if not isinstance(written, int | float):
             findings.append(_error("config-reread", path, (key,), f"{key} is missing"))
             continue
-        apart = abs(written - value) / max(abs(value), 1e-3)
-        deviation = deviation.or_(apart, key)
-        if apart > CONFIG_SHARE:
-            findings.append(
-                _error(
-                    "config-reread",
-                    path,
-                    (key,),
-                    f"{key} = {written!r} does not follow from the parameters in the same file: {value!r}",
-                    abs(written - value),
-                    abs(value) * CONFIG_SHARE,
-                    "",
-                )
-            )
+        # Next to zero (an angle of zero, say) a share means nothing: a millimetre and a milliradian are the floor.
+        share = abs(written - value) / max(abs(value), 1e-3)
+        deviation = deviation.or_(share, key)
+        if share > CONFIG_SHARE:
+            text = f"{key} = {written!r} does not follow from the parameters in the same file: {value!r}"
+            findings.append(_error("config-reread", path, (key,), text, share, CONFIG_SHARE))
     return CheckResult(
         check="config-reread",
         looked_at={"numbers": len(config)},

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +11,7 @@ from linkwright.designs.language.errors import BuildError
 from linkwright.designs.language.poses import invert_pose
 from linkwright.generator.assembly import AssembledBody
 
+from ..jointed_faces import JointedFaces
 from ..mating import body_triangles
 from .containment import compute_anchor, find_inside
 from .distance import PoseScan, scan_poses
@@ -63,8 +65,12 @@ class PairScan:
         return (self.scan.values <= TOUCH) | self.is_swallowed
 
 
-def build_contact_body(body: AssembledBody) -> ContactBody:
+def build_contact_body(body: AssembledBody, classes: Array | None = None) -> ContactBody:
     """The searchable surface of a body.
+
+    Args:
+        body: with its solids.
+        classes: a number per face, see `tree.build_tree`: which joints the face runs in.
 
     Raises:
         BuildError: a part's mesh has no inside.
@@ -78,7 +84,7 @@ def build_contact_body(body: AssembledBody) -> ContactBody:
             raise BuildError(where, "no point inside its mesh was found; the mesh is open or inside out")
         anchors.append(point)
     return ContactBody(
-        tree=build_tree(triangles, faces),
+        tree=build_tree(triangles, faces, classes=classes),
         part_of_face=np.repeat(np.arange(len(body.parts)), [len(p.solid.surfaces) for p in body.parts]),
         anchors=np.array(anchors),
         deviation=max(p.solid.mesh.deviation for p in body.parts),
@@ -86,8 +92,7 @@ def build_contact_body(body: AssembledBody) -> ContactBody:
 
 
 def scan_pair(
-    a: ContactBody, b: ContactBody, Ts_ab: Array, *, need: float, share: float = 0.0, exempt_a: Array | None = None,
-    exempt_b: Array | None = None,
+    a: ContactBody, b: ContactBody, Ts_ab: Array, *, need: float, share: float = 0.0, faces: JointedFaces | None = None
 ) -> PairScan:
     """How near two bodies come over n poses, and whether one holds a part of the other.
 
@@ -96,9 +101,9 @@ def scan_pair(
         Ts_ab: poses of B seen from A, shape (n, 4, 4) [mm].
         need: distances below this are wanted at every pose, exactly [mm].
         share: by which a least distance above `need` may exceed the exact one.
-        exempt_a, exempt_b: see `distance.compute_distance`.
+        faces: what the joints of the two say about their faces, if there are any.
     """
-    scan = scan_poses(a.tree, b.tree, Ts_ab, need=need, share=share, exempt_a=exempt_a, exempt_b=exempt_b)
+    scan = _scan(a, b, Ts_ab, need, share, faces)
     swallowed_a, swallowed_b = np.full(len(Ts_ab), -1), np.full(len(Ts_ab), -1)
     apart = np.linalg.norm(Ts_ab[:, :3, :3] @ b.tree.centre + Ts_ab[:, :3, 3] - a.tree.centre, axis=1)
     open_ = np.flatnonzero((apart < a.tree.radius + b.tree.radius) & (scan.values > TOUCH))
@@ -106,3 +111,32 @@ def scan_pair(
         swallowed_b[open_] = find_inside(a.tree, b.anchors, Ts_ab[open_])
         swallowed_a[open_] = find_inside(b.tree, a.anchors, invert_pose(Ts_ab[open_]))
     return PairScan(scan=scan, swallowed_a=swallowed_a, swallowed_b=swallowed_b)
+
+
+def _scan(
+    a: ContactBody, b: ContactBody, Ts: Array, need: float, share: float, faces: JointedFaces | None
+) -> PoseScan:
+    """Distances over all poses; pairs of faces that keep their distance are looked at once.
+
+    The first pose gives an upper bound of the steady pairs' distance, and so of the least one. If it is below
+    `need`, they are looked at again where all others are farthest away: either the steady ones are nearer there, and
+    then their distance is known, or they are farther than the others at every pose.
+    """
+    if faces is None:
+        return scan_poses(a.tree, b.tree, Ts, need=need, share=share)
+
+    def at_one(k: int) -> PoseScan:
+        scan = scan_poses(a.tree, b.tree, Ts[k : k + 1], need=need, share=share, exempt_a=faces.exempt_a,
+                          exempt_b=faces.exempt_b)
+        return dataclasses.replace(scan, pose=k if scan.pose == 0 else -1)
+
+    first = at_one(0)
+    moving = scan_poses(a.tree, b.tree, Ts, need=need, share=share, cutoff=first.value, exempt_a=faces.steady_a,
+                        exempt_b=faces.steady_b)
+    looked, values = [moving, first], moving.values
+    if first.value < need:
+        far = int(np.argmax(values))
+        looked.append(at_one(far))
+        if looked[-1].value < values[far]:
+            values = np.minimum(values, looked[-1].value)
+    return dataclasses.replace(min(looked, key=lambda scan: scan.value), values=values)

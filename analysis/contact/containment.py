@@ -7,6 +7,7 @@ the winding number, summed over all triangles, decides.
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -223,7 +224,7 @@ def compute_anchor(tree: ContactTree, n_tries: int = 12) -> tuple[Array, float]:
     areas = np.linalg.norm(normals, axis=1)
     # One piece out of each of n_tries regions of the tree, its largest, so that they lie all over the surface.
     edges = np.linspace(0, len(p), min(n_tries, len(p)) + 1).astype(int)
-    chosen = np.array([lo + int(np.argmax(areas[lo:hi])) for lo, hi in zip(edges[:-1], edges[1:], strict=True)])
+    chosen = np.array([lo + int(np.argmax(areas[lo:hi])) for lo, hi in itertools.pairwise(edges)])
     # Not the centroid: the middle of a symmetric face looks at the middle, an edge or a hole of the opposite one.
     starts = np.einsum("j,ijk->ik", np.array([0.41, 0.35, 0.24]), p[chosen])
     point, depth = _inward(tree.arrays, starts, -normals[chosen] / areas[chosen, None])

@@ -157,7 +157,8 @@ def _leaves(
 @kernel
 def _nearest(
     a: Arrays, nodes_a: Array, bits_a: Array, b: Arrays, nodes_b: Array, bits_b: Array, T: Array, best: float,
-    exact_below: float, share: float, witness: Array, points: Array, stack: Array, bounds: Array, moved: Array, s: Array,
+    exact_below: float, share: float, witness: Array, points: Array, stack: Array, bounds: Array, moved: Array,
+    s: Array,
 ) -> float:
     """The least of `best` and the distance of two trees at pose T; see the module's docstring."""
     enough = _enough(best, exact_below, share)

@@ -30,7 +30,7 @@ def kernel(function: Callable[..., Any]) -> Any:
     """
     dispatcher = numba.njit(nogil=True, cache=True, error_model="numpy")(function)
     file = getattr(getattr(dispatcher, "_cache", None), "_cache_file", None)
-    if hasattr(file, "_source_stamp"):
+    if file is not None and hasattr(file, "_source_stamp"):
         file._source_stamp = (file._source_stamp, _SOURCES)
         return dispatcher
     return numba.njit(nogil=True, error_model="numpy")(function)

@@ -2,7 +2,7 @@
 
 Leg i stands on a pin at C_i = Rz(delta_i)(R, 0, 0) whose axis is tangential; alpha_i leans its plane outwards. The
 plane's chain carries the ball F_i at the height rho_i = L1 + w above the pin and y sideways. All of HIT, UCI and
-KAIST share this; they differ in the planar chain.
+KAIST share this; they differ in the planar chain. KJIST turns it over: there the pins are on the plate.
 
 Source: Zhang et al., section III, corrected (see the docstrings and tests/papers/test_zhang_hit.py).
 """
@@ -15,12 +15,12 @@ from typing import NamedTuple
 import numpy as np
 
 from ..language.vectors import Rot, Vec, rot_y, rot_z
-from ..language.vocabulary import Number, Require, atan2, hypot
+from ..language.vocabulary import Number, Require, atan2, cos, hypot, sin, sqrt
 
 DELTAS = (0.0, 2.0 * math.pi / 3.0, 4.0 * math.pi / 3.0)
 
 #: The pairs of legs whose balls the plate keeps sqrt(3) r apart (eq. 12).
-_PAIRS = ((0, 1), (1, 2), (2, 0))
+PAIRS = ((0, 1), (1, 2), (2, 0))
 
 _STEP_CAP = 0.5
 _MAX_STEPS = 40
@@ -61,6 +61,26 @@ def solve_pin(F: Vec, delta: float, base_radius: Number, pivot: Number, pin: flo
     return LegTip(alpha, local.y, pin * rho - pivot)
 
 
+def solve_offset_pin(
+    F: Vec, delta: float, base_radius: Number, pivot: Number, aside: Number, pin: float, require: Require
+) -> LegTip:
+    """As `solve_pin`, for a ball that lies aside of the leg's plane.
+
+    Args:
+        F, delta, base_radius, pivot, pin: as for `solve_pin`.
+        aside: x_F, ball from the leg's plane along its outward normal [mm].
+        require: told "on the pin": the ball must stay farther from the pin's axis than its offset.
+
+    Source: derived; Zhang et al. forbid the offset.
+    """
+    local = rot_z(-delta).apply(F) - Vec(base_radius, 0.0, 0.0)
+    squared = local.x * local.x + local.z * local.z - aside * aside
+    require(squared - 1e-6, "on the pin")
+    rho = sqrt(squared)
+    alpha = atan2(pin * local.x, pin * local.z) - atan2(pin * aside, rho)
+    return LegTip(alpha, local.y, pin * rho - pivot)
+
+
 def leg_axes(alpha: Number, delta: float) -> Rot:
     """R_base_leg: x normal to the leg's plane (motor axes), y along the pin, z up the leg."""
     turned = rot_z(delta) @ rot_y(alpha)
@@ -68,8 +88,40 @@ def leg_axes(alpha: Number, delta: float) -> Rot:
     return turned
 
 
+def leg_link(axes: Rot, foot: Vec, direction: Number, y: Number, z: Number) -> tuple[Rot, Vec]:
+    """Axes and origin of a link in the leg's plane: x along it, z along the motors.
+
+    Args:
+        axes, foot: the plane's axes and its origin in the base [mm].
+        direction: of the link from +y towards +z [rad].
+        y, z: its origin in the plane [mm].
+    """
+    c, s = cos(direction), sin(direction)
+    return Rot(axes.y * c + axes.z * s, axes.z * c - axes.y * s, axes.x), foot + axes.y * y + axes.z * z
+
+
+def push_row(axes: Rot, in_plane: tuple[Number, Number], arm: Vec, slope: Number = 0.0) -> tuple[Number, ...]:
+    """Row of the inverse Jacobian for a motor whose rate is a linear form of the ball's velocity in the leg's plane.
+
+    Args:
+        axes: the plane's axes in the base.
+        in_plane: rate per velocity along y and along z of the plane [rad/mm].
+        arm: ball from the platform's origin, in base axes [mm].
+        slope: x_F / rho for a ball aside of the plane: leaning the plane lifts it.
+
+    Source: Zhang et al., eq. (16), as force lines; the offset's term is derived.
+    """
+    along = axes.y * in_plane[0] + (axes.z + axes.x * slope) * in_plane[1]
+    return (*along, *arm.cross(along))
+
+
 def close_loops(
-    y: np.ndarray, rho: np.ndarray, base_radius: float, plate_radius: float, starts: np.ndarray
+    y: np.ndarray,
+    rho: np.ndarray,
+    base_radius: float,
+    plate_radius: float,
+    starts: np.ndarray,
+    aside: float = 0.0,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Newton on the leans: three squared distances between balls equal 3 r^2.
 
@@ -77,24 +129,49 @@ def close_loops(
         y, rho: the balls in their legs' planes [mm], shape (n, 3).
         base_radius, plate_radius: R, r [mm].
         starts: leans to start from [rad], shape (n, 3).
+        aside: x_F, balls from their legs' planes [mm].
+
+    Returns:
+        As `close_circles`.
+
+    Source: Zhang et al., eq. (12), squared so that it is smooth.
+    """
+    wanted = np.full((len(rho), 3), math.sqrt(3.0) * plate_radius)
+    return close_circles(y, rho, base_radius, wanted, starts, aside)
+
+
+def close_circles(
+    y: np.ndarray,
+    rho: np.ndarray,
+    base_radius: float,
+    wanted: np.ndarray,
+    starts: np.ndarray,
+    aside: float = 0.0,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Newton on three angles: points on circles about the three pins keep wanted distances.
+
+    Args:
+        y, rho: the points in their legs' planes [mm], shape (n, 3).
+        base_radius: R [mm].
+        wanted: distances of the pairs 1-2, 2-3, 3-1 [mm], shape (n, 3).
+        starts: leans to start from [rad], shape (n, 3).
+        aside: points from their legs' planes [mm].
 
     Returns:
         alphas (n, 3) [rad]; residual (n,): largest distance error of the three pairs [mm]; det (n,): determinant of
         the closure's derivative, dimensionless; its sign tells the assembly mode and 0 is the parallel singularity.
-
-    Source: Zhang et al., eq. (12), squared so that it is smooth.
     """
     alphas = starts.copy()
     e_y = np.stack([rot_z(d).y.array() for d in DELTAS])
     for _ in range(_MAX_STEPS):
-        f, A, _ = _closure(alphas, y, rho, base_radius, plate_radius, e_y)
+        f, A, _ = _closure(alphas, y, rho, base_radius, wanted, aside, e_y)
         step = _solve3(A, f)
         step = np.clip(np.where(np.isfinite(step), step, 0.1), -_STEP_CAP, _STEP_CAP)
         alphas = alphas - step
         if np.max(np.abs(step), initial=0.0) < 1e-15:
             break
-    f, A, scale = _closure(alphas, y, rho, base_radius, plate_radius, e_y)
-    residual = np.max(np.abs(f), axis=-1) / (2.0 * math.sqrt(3.0) * plate_radius)
+    f, A, scale = _closure(alphas, y, rho, base_radius, wanted, aside, e_y)
+    residual = np.max(np.abs(f) / (2.0 * np.maximum(wanted, 1e-9)), axis=-1)
     return np.mod(alphas + math.pi, 2.0 * math.pi) - math.pi, residual, np.linalg.det(A / scale[..., None, None])
 
 
@@ -108,23 +185,23 @@ def _solve3(A: np.ndarray, f: np.ndarray) -> np.ndarray:
         return (c0 * f[:, :1] + c1 * f[:, 1:2] + c2 * f[:, 2:3]) / det[:, None]
 
 
-def _closure(alphas, y, rho, base_radius, plate_radius, e_y):
+def _closure(alphas, y, rho, base_radius, wanted, aside, e_y):
     F, dF = [], []
     for i, delta in enumerate(DELTAS):
         axes = leg_axes(alphas[:, i], delta)
         up, out = axes.z.array(), axes.x.array()
         foot = rot_z(delta).apply(Vec(base_radius, 0.0, 0.0)).array()
-        F.append(foot + rho[:, i, None] * up + y[:, i, None] * e_y[i])
-        dF.append(rho[:, i, None] * out)
+        F.append(foot + rho[:, i, None] * up + y[:, i, None] * e_y[i] + aside * out)
+        dF.append(rho[:, i, None] * out - aside * up)
     n = len(alphas)
     f, A = np.empty((n, 3)), np.zeros((n, 3, 3))
-    for k, (a, b) in enumerate(_PAIRS):
+    for k, (a, b) in enumerate(PAIRS):
         apart = F[a] - F[b]
-        f[:, k] = np.einsum("ni,ni->n", apart, apart) - 3.0 * plate_radius**2
+        f[:, k] = np.einsum("ni,ni->n", apart, apart) - wanted[:, k] ** 2
         A[:, k, a] = 2.0 * np.einsum("ni,ni->n", apart, dF[a])
         A[:, k, b] = -2.0 * np.einsum("ni,ni->n", apart, dF[b])
-    scale = 2.0 * math.sqrt(3.0) * plate_radius * np.maximum(np.max(np.abs(rho), axis=-1), 1e-9)
-    return f, A, scale
+    scale = 2.0 * np.max(wanted, axis=-1) * np.maximum(np.max(np.abs(rho), axis=-1), 1e-9)
+    return f, A, np.maximum(scale, 1e-9)
 
 
 def plate_pose(F: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -71,7 +71,7 @@ class FrameShop:
     def _screw_places(self) -> tuple[tuple[float, float], ...]:
         """Where the side plates are screwed to blocks and keel: two screws each."""
         span, tall = self.f.pin_span / 2.0, self.f.end_block_height / 2.0 - 4.0
-        return ((-span, -tall), (-span, tall), (span, -tall), (span, tall), (-4.5, 2.0), (4.5, 2.0))
+        return ((-span, -tall), (-span, tall), (span, -tall), (span, tall), (-5.5, 2.0), (5.5, 2.0))
 
     def _side(self, side: float) -> tuple[Part, ...]:
         """A side plate at -x (side -1, carries the left bar's motor) or +x (+1, the right bar's), with its parts."""
@@ -166,6 +166,7 @@ class FrameShop:
             motor_body(m.name),
             m,
             LEG_PLANE.at(own, self.h, outer, flip=side > 0),
+            runs_in_joint=True,
             fit="pilot H7 in the side plate",
         )
         screws = []
@@ -201,10 +202,9 @@ class FrameShop:
         )
 
     def _tapped(self, y: float, z: float) -> tuple[Hole, ...]:
-        depth = self.half - 1.0 if abs(y) > 5.0 else self.half - 3.5
         block = screw(_BLOCK_SCREW)
         return tuple(
-            Hole(x=y, y=z, top=s * self.half, upwards=s < 0, diameter=block.diameter, depth=depth, thread="M4")
+            Hole(x=y, y=z, top=s * self.half, upwards=s < 0, diameter=block.diameter, depth=self.half - 0.5, thread="M4")
             for s in (-1.0, 1.0)
         )
 
@@ -229,13 +229,13 @@ class FrameShop:
             circles = tuple(
                 (s * span + a * (half - corner), b * (tall - corner), corner) for a in (-1, 1) for b in (-1, 1)
             )
-            here = tuple(q for q in places if q[0] * s > 5.0)
+            here = tuple(q for q in places if q[0] * s > 10.0)
             bore = CrossHole(
                 origin=(s * (span + half), 0.0, 0.0), direction=(-s, 0.0, 0.0), diameter=row.bore, depth=f.end_block
             )
             parts.append(self._block(f"end_block_{name}", circles, here, bore))
             parts.extend(self._axle(name, s, span - half))
-        keel = tuple((a * 6.5, z, 1.5) for a in (-1.0, 1.0) for z in (4.5, -10.5))
+        keel = tuple((a * 7.5, z, 1.5) for a in (-1.0, 1.0) for z in (4.5, -10.5))
         rod = CrossHole(origin=(0.0, -12.0, 0.0), direction=(0.0, 1.0, 0.0), diameter=_ROD, depth=9.0, thread="M6")
         parts.append(self._block("keel", keel, places[4:], rod))
         return tuple(parts)

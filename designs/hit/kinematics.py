@@ -121,7 +121,7 @@ def _leg_frames(p: HitParameters, leg: LegState, foot: Vec) -> list[tuple[Rot, V
         link(up_left, left_y, left_z),
         link(up_right, right_y, right_z),
         link(0.0, leg.y, h + leg.w),
-        link(t1, -e + v1 * math.cos(p.lower_offset_angle), h + v1 * math.sin(p.lower_offset_angle)),
+        link(t1, -e + v1 * cos(p.lower_offset_angle), h + v1 * sin(p.lower_offset_angle)),
         link(0.0, left_y, left_z),
-        link(up_left, left_y + v2 * math.cos(p.upper_offset_angle), left_z + v2 * math.sin(p.upper_offset_angle)),
+        link(up_left, left_y + v2 * cos(p.upper_offset_angle), left_z + v2 * sin(p.upper_offset_angle)),
     ]

@@ -114,8 +114,8 @@ def _socket(
     at, mount, cover_row = lay.at(0.0, 0.0, 0.0), screw(_MOUNT_SCREW), screw(_COVER_SCREW)
     length = max(known for known in mount.lengths if known <= s.plate_thickness + d.mount_depth - 0.5)
     made = (
-        ("bushing", bushing(d), m.platform, "on the arm, one screw from above", False),
-        ("shim", shim(d), m.pins, "under the lower ring, sets the play", False),
+        ("bushing", bushing(d), m.platform, "on the arm, one screw from above", True),
+        ("shim", shim(d), m.pins, "under the lower ring, sets the play", True),
         ("lower_ring", lower_ring(d), m.seats, "H7/h6 in the bushing", True),
         ("upper_ring", upper_ring(d), m.seats, "H7/h6 in the bushing", True),
         ("cover", shell_cover(d), m.platform, "on bushing and upper ring, screwed", True),

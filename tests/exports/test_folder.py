@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.designs.language.errors import ReleaseError
-from linkwright.exports.folder import whole_folder
+from linkwright.exports.folder import prove_writable, whole_folder
 
 
 def names_in(folder):
@@ -134,3 +134,19 @@ def test_link_to_an_older_folder_stays_a_link(tmp_path):
     write(tmp_path / "out")
     assert (tmp_path / "out").is_symlink()
     assert (tmp_path / "real" / "mark").read_text() == "new"
+
+
+def test_proof_that_a_place_can_be_written_leaves_nothing(tmp_path):
+    prove_writable(tmp_path / "a" / "b" / "out")
+    assert names_in(tmp_path) == []
+    write(tmp_path / "out", "old")
+    prove_writable(tmp_path / "out")
+    assert (tmp_path / "out" / "mark").read_text() == "old"
+    assert names_in(tmp_path) == ["out"]
+
+
+def test_proof_fails_where_nothing_can_be_written(tmp_path):
+    (tmp_path / "file").write_text("x")
+    with pytest.raises(ReleaseError, match="cannot be written"):
+        prove_writable(tmp_path / "file" / "a" / "out")
+    assert names_in(tmp_path) == ["file"]

@@ -30,8 +30,8 @@ class SphericalJointDimensions:
     """Ball-bar and socket; the defaults are the set with a ball of 16 mm."""
 
     ball_diameter: float = length(16.0, "a standard ball's size: gauges and laps for it exist", symbol="2 R_b")
-    root_diameter: float = length(3.5, "where the bar leaves the ball: thin for a wide cone, 100 MPa in bending at 30 N",
-                                  symbol="d")
+    root_diameter: float = length(3.5, "where the bar leaves the ball: thin for a wide cone, 100 MPa in bending at "
+                                  "30 N", symbol="d")
     root_fillet: float = length(0.4, "radius between ball and root; above 0.4 it costs cone", least=0.0)
     shoulder_height: float = length(14.0, "ball's centre to the thick part of the bar: must pass over the cover's face",
                                     symbol="h_s")
@@ -45,14 +45,16 @@ class SphericalJointDimensions:
     cover_diameter: float = length(34.0, "outside of cover and bushing: leaves 0.4 mm around the countersinks")
     cover_face: float = length(4.2, "ball's centre to the cover's outer face", symbol="a")
     cover_thickness: float = length(3.3, "cover outside of the rings: the countersunk heads and 1 mm under them")
-    rim_diameter: float = length(15.5, "narrowest edge of the opening: smaller than the ball, so it catches it", symbol="p")
+    rim_diameter: float = length(15.5, "narrowest edge of the opening: smaller than the ball, so it catches it",
+                                 symbol="p")
     land: float = length(0.7, "height of the cylinder below that edge: a sharp edge would chip")
     countersink_depth: float = length(1.0, "outer face down to the narrowest edge", symbol="t")
     countersink_angle: float = angle(120.0 * DEG, "included; half of it must not be below the cone's half angle",
                                      least=0.0, most=170.0 * DEG)
     seat_clearance: float = length(0.02, "seat's radius less the ball's: grease film, set by the shim")
     ring_outer: float = length(22.0, "outside of both rings and bore of the bushing, H7/h6: wall of 3 mm")
-    upper_ring_foot: float = angle(88.0 * DEG, "polar angle where the upper seat ends", least=45.0 * DEG, most=89.9 * DEG)
+    upper_ring_foot: float = angle(88.0 * DEG, "polar angle where the upper seat ends", least=45.0 * DEG,
+                                   most=89.9 * DEG)
     lower_ring_mouth: float = angle(92.0 * DEG, "polar angle where the lower seat begins", least=90.1 * DEG,
                                     most=135.0 * DEG)
     lower_ring_foot: float = angle(140.0 * DEG, "polar angle where the lower seat ends", least=100.0 * DEG,

@@ -41,7 +41,7 @@ def ball_bar(d: SphericalJointDimensions) -> Turned:
     corners = [(q, d.shoulder_height), (stem - c, d.shoulder_height), (stem, d.shoulder_height + c),
                (stem, d.stem_length), (stud, d.stem_length), (stud, end), (0.0, end)]
     profile += [Vertex(r=r, z=z) for r, z in _without_repeats(corners)]
-    tommy = ()
+    tommy: tuple[CrossHole, ...] = ()
     if d.tommy_hole:
         height = d.stem_length - d.tommy_hole / 2.0 - _TOMMY_MARGIN
         tommy = (CrossHole(origin=(-stem - 1.0, 0.0, height), direction=(1.0, 0.0, 0.0), diameter=d.tommy_hole,
@@ -71,7 +71,8 @@ def shim(d: SphericalJointDimensions) -> Turned:
     check_dimensions(d)
     inner, outer, top = d.pocket_radius, d.ring_outer / 2.0, d.lower_ring_bottom
     low = top - d.shim_thickness
-    return Turned(profile=(Vertex(r=inner, z=low), Vertex(r=outer, z=low), Vertex(r=outer, z=top), Vertex(r=inner, z=top)))
+    corners = ((inner, low), (outer, low), (outer, top), (inner, top))
+    return Turned(profile=tuple(Vertex(r=r, z=z) for r, z in corners))
 
 
 def shell_cover(d: SphericalJointDimensions) -> Turned:

@@ -1,0 +1,1 @@
+"""One definition of a mechanism's kinematics, read into a graph and printed for many machines."""

@@ -1,0 +1,1 @@
+"""The plain planar five-bar, driven at its base links."""

@@ -1,0 +1,1 @@
+"""Haptic pen: a pen between two waist-hinged pantographs, six motors, passive roll (Stocco, Salcudean, Sassani)."""

@@ -1,0 +1,1 @@
+"""KAIST master hand: three five-bars on base pins, balls at their tips."""

@@ -1,0 +1,1 @@
+"""SenSation: two planar arms, each driven at its tip link through a parallelogram."""

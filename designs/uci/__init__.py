@@ -1,0 +1,1 @@
+"""UCI hand controller: three pantographs on base pins, balls at their tips."""
