@@ -72,8 +72,14 @@ def build_body_faces(body: AssembledBody) -> BodyFaces:
     order = np.argsort(groups, kind="stable")
     triangles = tuple(np.split(corners[order], np.cumsum(np.bincount(groups, minlength=n))[:-1]))
     deviation = max(assembled.solid.mesh.deviation for assembled in body.parts)
-    return BodyFaces(body=body, lower=lower - deviation, upper=upper + deviation, parts=parts, triangles=triangles,
-                     deviation=deviation)
+    return BodyFaces(
+        body=body,
+        lower=lower - deviation,
+        upper=upper + deviation,
+        parts=parts,
+        triangles=triangles,
+        deviation=deviation,
+    )
 
 
 def faces_of(shape: Any) -> list[Any]:

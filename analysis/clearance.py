@@ -84,8 +84,10 @@ def check_clearance(assembly: Assembly, poses: Array, *, progress: Progress | No
     Ts = mechanism.place_bodies(poses)
     scanned = _scan_pairs(assembly, pairs, Ts, progress)
     if all(pair.found.scan.pose < 0 for pair in scanned):
-        raise VacuousCheckError(f"{design.name}: clearance: every pair of faces is exempt as mating in a joint, so "
-                                "nothing was looked at; declare runs_in_joint for the running parts alone")
+        raise VacuousCheckError(
+            f"{design.name}: clearance: every pair of faces is exempt as mating in a joint, so "
+            "nothing was looked at; declare runs_in_joint for the running parts alone"
+        )
     for pair in scanned:
         findings += _judge(assembly, pair, poses, Ts)
     return CheckResult(
@@ -106,16 +108,25 @@ def _check_reach(design: Design, poses: Array) -> tuple[Array, list[Finding]]:
         of_reason = [i for i, r in reasons.items() if r == reason]
         column = solution.requirements.index(reason)
         worst = min(of_reason, key=lambda i: float(solution.margins[i, column]))
-        findings.append(Finding(
-            rule="unreachable", severity=Severity.ERROR, subject=(reason,), pose=_shown(design, poses[worst]),
-            message=f"{len(of_reason)} of {len(poses)} poses of the workspace cannot be reached: {reason} misses by "
-                    f"{-float(solution.margins[worst, column]):.4g} at the worst",
-            measured=float(solution.margins[worst, column]), limit=0.0, key="workspace",
-            suggestion="shrink or move the workspace, or change the lengths that this requirement names",
-        ))
+        findings.append(
+            Finding(
+                rule="unreachable",
+                severity=Severity.ERROR,
+                subject=(reason,),
+                pose=_shown(design, poses[worst]),
+                message=f"{len(of_reason)} of {len(poses)} poses of the workspace cannot be reached: {reason} misses by "
+                f"{-float(solution.margins[worst, column]):.4g} at the worst",
+                measured=float(solution.margins[worst, column]),
+                limit=0.0,
+                key="workspace",
+                suggestion="shrink or move the workspace, or change the lengths that this requirement names",
+            )
+        )
     if not reachable.any():
-        raise VacuousCheckError(f"{design.name}: clearance: none of {len(poses)} poses can be reached "
-                                f"({'; '.join(f.message for f in findings)}); shrink or move the workspace")
+        raise VacuousCheckError(
+            f"{design.name}: clearance: none of {len(poses)} poses can be reached "
+            f"({'; '.join(f.message for f in findings)}); shrink or move the workspace"
+        )
     return reachable, findings
 
 
@@ -125,11 +136,16 @@ def _pairs_to_look_at(design: Design) -> list[tuple[int, int]]:
         if name not in names:
             raise UnknownNameError("body", name, names)
     allowed = {frozenset(a.pair) for a in design.allowed}
-    pairs = [(i, j) for i, j in itertools.combinations(range(len(names)), 2)
-             if frozenset((names[i], names[j])) not in allowed]
+    pairs = [
+        (i, j)
+        for i, j in itertools.combinations(range(len(names)), 2)
+        if frozenset((names[i], names[j])) not in allowed
+    ]
     if not pairs:
-        raise VacuousCheckError(f"{design.name}: clearance: no pairs to look at among {len(names)} bodies and "
-                                f"{len(allowed)} declared contacts")
+        raise VacuousCheckError(
+            f"{design.name}: clearance: no pairs to look at among {len(names)} bodies and "
+            f"{len(allowed)} declared contacts"
+        )
     return pairs
 
 
@@ -185,28 +201,45 @@ def _judge(assembly: Assembly, pair: _Pair, poses: Array, Ts: Array) -> list[Fin
     hit = pair.interference
     if hit is not None and hit.volume > 0.0:
         T = Ts[hit.pose, pair.i]
-        return [Finding(
-            rule="interference", severity=Severity.ERROR, subject=names, pose=_shown(design, poses[hit.pose]),
-            message=f"{names[0]} ({hit.parts[0]}) and {names[1]} ({hit.parts[1]}) share {hit.volume:.4g} mm3"
-                    f"{' (one lies wholly in the other)' if hit.is_swallowed else ''}; the two bodies collide at "
-                    f"{hit.n_poses} of {len(poses)} poses, this is the worst of {hit.n_examined} examined",
-            measured=hit.volume, limit=0.0, unit="mm3", location=_point(T, hit.centre),
-            suggestion="move the two apart, make one smaller there, or shrink the workspace",
-        )]
+        return [
+            Finding(
+                rule="interference",
+                severity=Severity.ERROR,
+                subject=names,
+                pose=_shown(design, poses[hit.pose]),
+                message=f"{names[0]} ({hit.parts[0]}) and {names[1]} ({hit.parts[1]}) share {hit.volume:.4g} mm3"
+                f"{' (one lies wholly in the other)' if hit.is_swallowed else ''}; the two bodies collide at "
+                f"{hit.n_poses} of {len(poses)} poses, this is the worst of {hit.n_examined} examined",
+                measured=hit.volume,
+                limit=0.0,
+                unit="mm3",
+                location=_point(T, hit.centre),
+                suggestion="move the two apart, make one smaller there, or shrink the workspace",
+            )
+        ]
     if pair.clearance >= least:
         return []
     # Here surfaces come near: a pair that is exempt throughout has an infinite clearance.
     scan = pair.found.scan
     n_near = int((scan.values < least + pair.allowance).sum())
-    return [Finding(
-        rule="clearance", severity=Severity.ERROR, subject=names, pose=_shown(design, poses[scan.pose]),
-        message=f"{names[0]} and {names[1]} come within {pair.clearance:.4g} mm ({scan.value:.4g} mm between meshes, "
-                f"less {pair.allowance:g} mm that these may lie off the solids); {least:g} mm are asked for, and "
-                f"{n_near} of {len(poses)} poses are nearer",
-        measured=pair.clearance, limit=least, unit="mm", location=_location(pair, Ts), key="clearance.minimum_mm",
-        suggestion=f"widen the gap by {least - pair.clearance:.3g} mm, shrink the workspace, or ask for less; a "
-                   "contact that is meant is declared under [[allowed]] with its reason",
-    )]
+    return [
+        Finding(
+            rule="clearance",
+            severity=Severity.ERROR,
+            subject=names,
+            pose=_shown(design, poses[scan.pose]),
+            message=f"{names[0]} and {names[1]} come within {pair.clearance:.4g} mm ({scan.value:.4g} mm between meshes, "
+            f"less {pair.allowance:g} mm that these may lie off the solids); {least:g} mm are asked for, and "
+            f"{n_near} of {len(poses)} poses are nearer",
+            measured=pair.clearance,
+            limit=least,
+            unit="mm",
+            location=_location(pair, Ts),
+            key="clearance.minimum_mm",
+            suggestion=f"widen the gap by {least - pair.clearance:.3g} mm, shrink the workspace, or ask for less; a "
+            "contact that is meant is declared under [[allowed]] with its reason",
+        )
+    ]
 
 
 def _location(pair: _Pair, Ts: Array) -> tuple[float, float, float] | None:
@@ -233,13 +266,16 @@ def _facts(assembly: Assembly, scanned: list[_Pair], poses: Array, Ts: Array, *,
     design = assembly.design
     known = [pair for pair in scanned if pair.found.scan.pose >= 0]
     nearest = sorted(known, key=lambda pair: (pair.clearance, -pair.interference.volume if pair.interference else 0.0))
-    rows = [{
-        "pair": [assembly.bodies[pair.i].body.name, assembly.bodies[pair.j].body.name],
-        "clearance_mm": pair.clearance,
-        "pose": _shown(design, poses[pair.found.scan.pose]),
-        "location_mm": _location(pair, Ts),
-        "n_colliding": int(pair.found.is_colliding.sum()),
-    } for pair in nearest[:N_NEAREST]]
+    rows = [
+        {
+            "pair": [assembly.bodies[pair.i].body.name, assembly.bodies[pair.j].body.name],
+            "clearance_mm": pair.clearance,
+            "pose": _shown(design, poses[pair.found.scan.pose]),
+            "location_mm": _location(pair, Ts),
+            "n_colliding": int(pair.found.is_colliding.sum()),
+        }
+        for pair in nearest[:N_NEAREST]
+    ]
     return {
         "minimum_clearance_mm": rows[0]["clearance_mm"],
         "minimum_clearance_pair": rows[0]["pair"],

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from enum import StrEnum
 from typing import Any
 
@@ -60,6 +60,21 @@ class CheckResult:
     looked_at: Mapping[str, int]
     findings: tuple[Finding, ...] = ()
     facts: Mapping[str, Any] = field(default_factory=dict)
+
+
+def facts_from_result(result: CheckResult) -> dict[str, Any]:
+    """A result as plain JSON values, to be noted and recalled."""
+    return asdict(result)
+
+
+def result_from_facts(facts: Mapping[str, Any]) -> CheckResult:
+    """The inverse of `facts_from_result`."""
+    findings = []
+    for row in facts["findings"]:
+        place = row["location"]
+        kept = {**row, "severity": Severity(row["severity"]), "subject": tuple(row["subject"])}
+        findings.append(Finding(**{**kept, "location": None if place is None else (place[0], place[1], place[2])}))
+    return CheckResult(**{**facts, "findings": tuple(findings)})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -57,8 +57,12 @@ def check_fits(assembly: Assembly, *, store: Store | None = None, progress: Prog
         clearances[joint.name] = play.measure(joint)
         findings += _fit_findings(joint, clearances[joint.name])
     _tell(progress, total, total, "")
-    return CheckResult(check="fits", looked_at={"body kinds": len(kinds), "part pairs": n_pairs, "joints": len(joints)},
-                       findings=tuple(findings), facts={"running_clearances_mm": clearances})
+    return CheckResult(
+        check="fits",
+        looked_at={"body kinds": len(kinds), "part pairs": n_pairs, "joints": len(joints)},
+        findings=tuple(findings),
+        facts={"running_clearances_mm": clearances},
+    )
 
 
 def _tell(progress: Progress | None, done: int, total: int, what: str) -> None:
@@ -79,15 +83,20 @@ def _overlaps(assembly: Assembly, body: AssembledBody, notebook: Notebook) -> li
         if volume <= LEAST_OVERLAP:
             continue
         point = transform_points(T_base, 0.5 * (lower + upper)[None])[0]
-        findings.append(Finding(
-            rule="part-overlap", severity=Severity.ERROR,
-            subject=(body.body.kind, a.part.name, b.part.name),
-            message=f"{body.body.kind}: {a.part.name} and {b.part.name} share {volume:.4g} mm3; parts of one body may "
-                    "touch, not overlap",
-            measured=volume, limit=LEAST_OVERLAP, unit="mm3",
-            location=(float(point[0]), float(point[1]), float(point[2])),
-            suggestion="move one of them, or cut the room for it out of the other",
-        ))
+        findings.append(
+            Finding(
+                rule="part-overlap",
+                severity=Severity.ERROR,
+                subject=(body.body.kind, a.part.name, b.part.name),
+                message=f"{body.body.kind}: {a.part.name} and {b.part.name} share {volume:.4g} mm3; parts of one body may "
+                "touch, not overlap",
+                measured=volume,
+                limit=LEAST_OVERLAP,
+                unit="mm3",
+                location=(float(point[0]), float(point[1]), float(point[2])),
+                suggestion="move one of them, or cut the room for it out of the other",
+            )
+        )
     return findings
 
 
@@ -147,11 +156,23 @@ def _fit_findings(joint: Joint, gap: float | None) -> list[Finding]:
     subject: tuple[str, ...] = (joint.name, joint.parent, joint.child)
     common: dict[str, Any] = {"rule": "fit", "severity": Severity.ERROR, "subject": subject, "unit": "mm"}
     if gap is None:
-        return [Finding(message=f"{joint.name}: {joint.parent} or {joint.child} has no face that runs in this joint, "
-                        "so nothing holds it", suggestion="mark the pin, bearing, ball or seat with runs_in_joint, and "
-                        "place it on the joint's axis", **common)]
+        return [
+            Finding(
+                message=f"{joint.name}: {joint.parent} or {joint.child} has no face that runs in this joint, "
+                "so nothing holds it",
+                suggestion="mark the pin, bearing, ball or seat with runs_in_joint, and place it on the joint's axis",
+                **common,
+            )
+        ]
     if gap > TOUCH:
         return []
-    return [Finding(message=f"{joint.name}: the faces of {joint.parent} and {joint.child} that run on each other "
-                    "touch; a running fit needs play", measured=gap, limit=TOUCH,
-                    suggestion="make the bore larger or the pin smaller", **common)]
+    return [
+        Finding(
+            message=f"{joint.name}: the faces of {joint.parent} and {joint.child} that run on each other "
+            "touch; a running fit needs play",
+            measured=gap,
+            limit=TOUCH,
+            suggestion="make the bore larger or the pin smaller",
+            **common,
+        )
+    ]

@@ -48,7 +48,12 @@ class Interference:
 
 
 def measure_interference(
-    body_a: AssembledBody, body_b: AssembledBody, a: ContactBody, b: ContactBody, Ts_ab: Array, found: PairScan,
+    body_a: AssembledBody,
+    body_b: AssembledBody,
+    a: ContactBody,
+    b: ContactBody,
+    Ts_ab: Array,
+    found: PairScan,
     faces: JointedFaces | None,
 ) -> Interference:
     """The worst overlap among up to `N_EXAMINED` of the colliding poses.
@@ -77,8 +82,12 @@ def measure_interference(
             worst = total, pose, main, overlaps[main]
     total, pose, (i, j), overlap = worst if worst is not None else (0.0, int(chosen[0]), (0, 0), _NOTHING)
     return Interference(
-        n_poses=len(colliding), n_examined=len(chosen), pose=pose, volume=total if total > LEAST_VOLUME else 0.0,
-        parts=(body_a.parts[i].part.name, body_b.parts[j].part.name), centre=overlap.centre,
+        n_poses=len(colliding),
+        n_examined=len(chosen),
+        pose=pose,
+        volume=total if total > LEAST_VOLUME else 0.0,
+        parts=(body_a.parts[i].part.name, body_b.parts[j].part.name),
+        centre=overlap.centre,
         is_swallowed=bool(found.is_swallowed[pose]),
     )
 

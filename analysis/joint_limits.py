@@ -79,8 +79,9 @@ def measure_joint_limits(
     if progress is not None:
         progress(len(mechanism.joints), len(mechanism.joints), "")
     looked_at = {"joints": len(limits), "measured": bench.n_measured, "azimuths": n_azimuths * len(cones)}
-    return CheckResult(check="joint-limits", looked_at=looked_at, findings=tuple(findings),
-                       facts={"limits": limits, "cones": cones})
+    return CheckResult(
+        check="joint-limits", looked_at=looked_at, findings=tuple(findings), facts={"limits": limits, "cones": cones}
+    )
 
 
 class _Bench:
@@ -102,9 +103,16 @@ class _Bench:
         check_closure(joint, T)
         # All is told as the child sees it at home, so that legs around one plate have one measurement.
         T_back = invert_pose(T)
-        key = key_of("travel", evidence_of_shape(parent, T_back), evidence_of_body(child), joint.kind.value,
-                     rounded(joint.p_child), rounded(joint.axis_child), rounded(T_back[:3, :3] @ joint.axis_parent),
-                     n_azimuths)
+        key = key_of(
+            "travel",
+            evidence_of_shape(parent, T_back),
+            evidence_of_body(child),
+            joint.kind.value,
+            rounded(joint.p_child),
+            rounded(joint.axis_child),
+            rounded(T_back[:3, :3] @ joint.axis_parent),
+            n_azimuths,
+        )
         facts = self._notebook.recall(key)
         if facts is None:
             self.n_measured += 1
@@ -125,8 +133,15 @@ def _facts_of(measured: JointTravel, parent: AssembledBody, T_child_parent: Arra
     rows = []
     for t in measured.travels:
         middle = _middles(parent, T_child_parent)[t.parts[0]].tolist() if t.parts[0] >= 0 else None
-        rows.append([t.extent, t.is_stopped, middle, t.parts[1],
-                     transform_points(T_child_parent, np.array(t.point)[None])[0].tolist()])
+        rows.append(
+            [
+                t.extent,
+                t.is_stopped,
+                middle,
+                t.parts[1],
+                transform_points(T_child_parent, np.array(t.point)[None])[0].tolist(),
+            ]
+        )
     return {"azimuths": list(measured.azimuths), "travels": rows}
 
 
@@ -164,28 +179,44 @@ def _limits_of(joint: Joint, measured: JointTravel, value: float, assembly: Asse
         down, up = measured.travels
         lower, upper, stops = value - down.extent, value + up.extent, (stop(down), stop(up))
         unlimited = not (down.is_stopped or up.is_stopped)
-    return {"lower": lower, "upper": upper, "declared_lower": joint.lower, "declared_upper": joint.upper,
-            "unit": "mm" if joint.kind is JointKind.PRISMATIC else "rad", "unlimited": unlimited,
-            "stopped_below_by": stops[0], "stopped_above_by": stops[1]}
+    return {
+        "lower": lower,
+        "upper": upper,
+        "declared_lower": joint.lower,
+        "declared_upper": joint.upper,
+        "unit": "mm" if joint.kind is JointKind.PRISMATIC else "rad",
+        "unlimited": unlimited,
+        "stopped_below_by": stops[0],
+        "stopped_above_by": stops[1],
+    }
 
 
 def _formula_findings(joint: Joint, measured: float, formula: float | None) -> list[Finding]:
     if formula is None or abs(measured - formula) <= FORMULA_SLACK:
         return []
-    return [Finding(
-        rule="cone-formula", severity=Severity.WARNING, subject=(joint.name, joint.parent, joint.child),
-        message=f"{joint.name} leans by {measured:.3f} deg on its solids, but by {formula:.3f} deg according to the "
-                "formula",
-        measured=measured, limit=formula, unit="deg",
-        suggestion="look at countersink, shoulder, root fillet and ring edge: one of them stops the bar before the rim",
-    )]
+    return [
+        Finding(
+            rule="cone-formula",
+            severity=Severity.WARNING,
+            subject=(joint.name, joint.parent, joint.child),
+            message=f"{joint.name} leans by {measured:.3f} deg on its solids, but by {formula:.3f} deg according to the "
+            "formula",
+            measured=measured,
+            limit=formula,
+            unit="deg",
+            suggestion="look at countersink, shoulder, root fillet and ring edge: one of them stops the bar before the rim",
+        )
+    ]
 
 
 def _findings_of(joint: Joint, measured: JointTravel, limits: Mapping[str, Any], bench: _Bench) -> list[Finding]:
     unit = joint.unit
     scale = 1.0 if unit == "mm" else DEG
-    ends = [("upper", min(measured.travels, key=lambda t: t.extent), 1.0)] if measured.azimuths else [
-        ("lower", measured.travels[0], -1.0), ("upper", measured.travels[1], 1.0)]
+    ends = (
+        [("upper", min(measured.travels, key=lambda t: t.extent), 1.0)]
+        if measured.azimuths
+        else [("lower", measured.travels[0], -1.0), ("upper", measured.travels[1], 1.0)]
+    )
     findings = []
     for end, travel, sign in ends:
         declared, found = limits[f"declared_{end}"], limits[end]
@@ -194,13 +225,19 @@ def _findings_of(joint: Joint, measured: JointTravel, limits: Mapping[str, Any],
             continue
         by = limits["stopped_above_by" if end == "upper" else "stopped_below_by"]
         point = transform_points(bench.poses[joint.parent], np.array(travel.point)[None])[0]
-        findings.append(Finding(
-            rule="joint-limit", severity=Severity.ERROR, subject=(joint.name, joint.parent, joint.child),
-            message=f"{joint.name} is declared to go {'down' if sign < 0 else 'up'} to {declared / scale:.3f} {unit}, "
-                    f"but its solids touch at {found / scale:.3f} {unit}" + (f" ({by})" if by else ""),
-            measured=found / scale, limit=declared / scale, unit=unit,
-            location=(float(point[0]), float(point[1]), float(point[2])),
-            suggestion=f"declare {'at least' if sign < 0 else 'at most'} {found / scale:.2f} {unit}, or take metal "
-                       "away where they touch",
-        ))
+        findings.append(
+            Finding(
+                rule="joint-limit",
+                severity=Severity.ERROR,
+                subject=(joint.name, joint.parent, joint.child),
+                message=f"{joint.name} is declared to go {'down' if sign < 0 else 'up'} to {declared / scale:.3f} {unit}, "
+                f"but its solids touch at {found / scale:.3f} {unit}" + (f" ({by})" if by else ""),
+                measured=found / scale,
+                limit=declared / scale,
+                unit=unit,
+                location=(float(point[0]), float(point[1]), float(point[2])),
+                suggestion=f"declare {'at least' if sign < 0 else 'at most'} {found / scale:.2f} {unit}, or take metal "
+                "away where they touch",
+            )
+        )
     return findings

@@ -49,24 +49,37 @@ def measure_joint(passage: Passage, joint: Joint, T_parent_child: Array, n_azimu
     at, along = np.array(joint.p_parent), np.array(joint.axis_parent) / np.linalg.norm(joint.axis_parent)
     corners = transform_points(T_parent_child, passage.child.corners) - at
     if joint.kind is JointKind.PRISMATIC:
+
         def slide(sign: float) -> Callable[[float], Array]:
             return lambda way: _shift(sign * way * along) @ T_parent_child
+
         end = 2.0 * (passage.parent.tree.radius + passage.child.tree.radius)
-        return JointTravel(travels=tuple(passage.measure(slide(s), rate=1.0, end=end, resolution=SLIDE_RESOLUTION)
-                                         for s in (-1.0, 1.0)))
+        return JointTravel(
+            travels=tuple(
+                passage.measure(slide(s), rate=1.0, end=end, resolution=SLIDE_RESOLUTION) for s in (-1.0, 1.0)
+            )
+        )
 
     def turn(axis: Array, start: Array) -> Callable[[float], Array]:
         return lambda angle: turn_about(at, axis, angle) @ start
 
     if joint.kind is JointKind.REVOLUTE:
         rate = float(np.linalg.norm(np.cross(corners, along), axis=1).max()) + passage.child.deviation
-        return JointTravel(travels=tuple(passage.measure(turn(s * along, T_parent_child), rate=rate, end=math.pi,
-                                                         resolution=TURN_RESOLUTION) for s in (-1.0, 1.0)))
+        return JointTravel(
+            travels=tuple(
+                passage.measure(turn(s * along, T_parent_child), rate=rate, end=math.pi, resolution=TURN_RESOLUTION)
+                for s in (-1.0, 1.0)
+            )
+        )
     start, azimuths = _aligned(joint, T_parent_child), tuple(k * math.tau / n_azimuths for k in range(n_azimuths))
     rate = float(np.linalg.norm(corners, axis=1).max()) + passage.child.deviation
     axes = [lean_axis(along, azimuth, _zero_azimuth(along, start)) for azimuth in azimuths]
-    return JointTravel(azimuths=azimuths, travels=tuple(
-        passage.measure(turn(axis, start), rate=rate, end=math.pi, resolution=TURN_RESOLUTION) for axis in axes))
+    return JointTravel(
+        azimuths=azimuths,
+        travels=tuple(
+            passage.measure(turn(axis, start), rate=rate, end=math.pi, resolution=TURN_RESOLUTION) for axis in axes
+        ),
+    )
 
 
 def lean_axis(along: Array, azimuth: float, zero: Array) -> Array:
@@ -109,10 +122,14 @@ def check_closure(joint: Joint, T_parent_child: Array) -> None:
     offset = T[:3, :3] @ np.array(joint.p_child) + T[:3, 3] - np.array(joint.p_parent)
     apart = float(np.linalg.norm(np.cross(offset, joint.axis_parent) if joint.kind is JointKind.PRISMATIC else offset))
     if apart > _CLOSURE:
-        raise KinematicsError(f"{joint.name}: at home {joint.child} misses {joint.parent} by {apart:.4g} mm at this "
-                              f"joint; place_bodies and joints must agree within {_CLOSURE:g} mm")
+        raise KinematicsError(
+            f"{joint.name}: at home {joint.child} misses {joint.parent} by {apart:.4g} mm at this "
+            f"joint; place_bodies and joints must agree within {_CLOSURE:g} mm"
+        )
     if joint.kind in (JointKind.REVOLUTE, JointKind.PRISMATIC):
         skew = float(np.linalg.norm(T[:3, :3] @ np.array(joint.axis_child) - np.array(joint.axis_parent)))
         if skew > _CLOSURE:
-            raise KinematicsError(f"{joint.name}: at home the axes of {joint.child} and {joint.parent} differ by "
-                                  f"{skew:.4g} (sine); they must agree within {_CLOSURE:g}")
+            raise KinematicsError(
+                f"{joint.name}: at home the axes of {joint.child} and {joint.parent} differ by "
+                f"{skew:.4g} (sine); they must agree within {_CLOSURE:g}"
+            )

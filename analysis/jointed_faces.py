@@ -55,14 +55,20 @@ class FaceTable:
         place = (joint.p_parent, joint.axis_parent) if as_parent else (joint.p_child, joint.axis_child)
         key = (body.body.kind, joint.kind, as_parent, *place)
         if key not in self._known:
-            self._known[key] = (mating_faces(body, joint, as_parent=as_parent),
-                                full_faces(body, joint, as_parent=as_parent))
+            self._known[key] = (
+                mating_faces(body, joint, as_parent=as_parent),
+                full_faces(body, joint, as_parent=as_parent),
+            )
         return self._known[key]
 
     def classes(self, body: AssembledBody) -> Array:
         """A number per face: equal for faces that run in, and are full about, the same joints of the body."""
-        rows = [row for joint in self._joints if body.body.name in (joint.parent, joint.child)
-                for row in self._of(body, joint)]
+        rows = [
+            row
+            for joint in self._joints
+            if body.body.name in (joint.parent, joint.child)
+            for row in self._of(body, joint)
+        ]
         if not rows:
             return np.zeros(n_faces(body), np.int64)
         return np.unique(np.array(rows), axis=1, return_inverse=True)[1].reshape(-1).astype(np.int64)
@@ -111,8 +117,9 @@ def full_faces(body: AssembledBody, joint: Joint, *, as_parent: bool) -> Array:
     for assembled in body.parts:
         R, p = assembled.T_body_part[:3, :3], assembled.T_body_part[:3, 3]
         at, along = R.T @ (np.asarray(point) - p), R.T @ np.asarray(axis)
-        revolved = [is_revolved_about(s, tuple(at.tolist()), tuple(along.tolist()), TOLERANCE)
-                    for s in assembled.solid.surfaces]
+        revolved = [
+            is_revolved_about(s, tuple(at.tolist()), tuple(along.tolist()), TOLERANCE) for s in assembled.solid.surfaces
+        ]
         if any(revolved):
             is_full = _bounded_by_circles(assembled.solid.mesh, len(revolved), at, along)
             revolved = [r and f for r, f in zip(revolved, is_full.tolist(), strict=True)]

@@ -35,12 +35,14 @@ def sample_box(lower: Array, upper: Array, n: int, seed: int) -> Array:
         raise VacuousCheckError(f"sampling: {n} poses are asked for, so nothing would be looked at; ask for 1 or more")
     if lower.ndim != 1 or lower.shape != upper.shape or len(lower) == 0:
         raise VacuousCheckError(
-            f"sampling: the box has bounds of shapes {lower.shape} and {upper.shape}; give one pair per coordinate")
+            f"sampling: the box has bounds of shapes {lower.shape} and {upper.shape}; give one pair per coordinate"
+        )
     wrong = np.flatnonzero(~(lower <= upper))
     if len(wrong):
         i = int(wrong[0])
         raise VacuousCheckError(
-            f"sampling: the box is empty: coordinate {i} runs from {lower[i]:g} to {upper[i]:g}; exchange its bounds")
+            f"sampling: the box is empty: coordinate {i} runs from {lower[i]:g} to {upper[i]:g}; exchange its bounds"
+        )
     rng = np.random.default_rng(seed)
     unit = rng.random((n, len(lower)))
     border = unit[(n + 1) // 2 :]

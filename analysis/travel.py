@@ -63,9 +63,12 @@ class Travel:
 def build_surroundings(body: AssembledBody) -> Surroundings:
     """The tree, faces and corners of a body."""
     corners, groups, _ = body_triangles(body)
-    return Surroundings(tree=build_tree(corners, groups), faces=build_body_faces(body),
-                        corners=np.unique(corners.reshape(-1, 3), axis=0),
-                        deviation=max(a.solid.mesh.deviation for a in body.parts))
+    return Surroundings(
+        tree=build_tree(corners, groups),
+        faces=build_body_faces(body),
+        corners=np.unique(corners.reshape(-1, 3), axis=0),
+        deviation=max(a.solid.mesh.deviation for a in body.parts),
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -111,9 +114,15 @@ class Passage:
         point: tuple[float, float, float] = (0.0, 0.0, 0.0)
         cutoff = _FIRST_LOOK
         while True:
-            near = compute_distance(self.parent.tree, self.child.tree, path(travel), cutoff=cutoff,
-                                    exempt_a=self.exempt_parent, exempt_b=self.exempt_child,
-                                    warm=warm if warm[0] >= 0 else None)
+            near = compute_distance(
+                self.parent.tree,
+                self.child.tree,
+                path(travel),
+                cutoff=cutoff,
+                exempt_a=self.exempt_parent,
+                exempt_b=self.exempt_child,
+                warm=warm if warm[0] >= 0 else None,
+            )
             if near.witness[0] >= 0:
                 warm = near.witness
             if near.point_a is not None:
@@ -135,8 +144,15 @@ class Passage:
 
     def gap(self, T: Array) -> float:
         """The exact gap at a pose of the child, at most `_EXACT_MARGIN` [mm]."""
-        return compute_gap(self.parent.faces, self.child.faces, T, self.exempt_parent, self.exempt_child,
-                           margin=_EXACT_MARGIN, where=self.where)
+        return compute_gap(
+            self.parent.faces,
+            self.child.faces,
+            T,
+            self.exempt_parent,
+            self.exempt_child,
+            margin=_EXACT_MARGIN,
+            where=self.where,
+        )
 
     def _settle(
         self, path: Motion, start: float, near: float, rate: float, end: float, resolution: float
@@ -178,6 +194,10 @@ class Passage:
 
 def build_passage(parent: Surroundings, child: Surroundings, joint: Joint, where: str) -> Passage:
     """The passage of a joint's child past its parent."""
-    return Passage(parent=parent, child=child, where=where,
-                   exempt_parent=steady_faces(parent.faces.body, joint, as_parent=True),
-                   exempt_child=steady_faces(child.faces.body, joint, as_parent=False))
+    return Passage(
+        parent=parent,
+        child=child,
+        where=where,
+        exempt_parent=steady_faces(parent.faces.body, joint, as_parent=True),
+        exempt_child=steady_faces(child.faces.body, joint, as_parent=False),
+    )

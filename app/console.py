@@ -27,14 +27,16 @@ def heading(console: Console, text: str) -> None:
     console.print(Text(text, style="bold"))
 
 
-def table_of(columns: Sequence[str], rows: Iterable[Sequence[str]], *, right: Sequence[int] = (),
-             whole: Sequence[int] = ()) -> Table:
+def table_of(
+    columns: Sequence[str], rows: Iterable[Sequence[str]], *, right: Sequence[int] = (), whole: Sequence[int] = ()
+) -> Table:
     """A table of texts; the columns `right` (from 0) are aligned to the right, those in `whole` are not folded."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, collapse_padding=True)
     for i, name in enumerate(columns):
         longest = max((len(word) for word in name.split()), default=1)
-        table.add_column(name, justify="right" if i in right else "left", overflow="fold", no_wrap=i in whole,
-                         min_width=longest)
+        table.add_column(
+            name, justify="right" if i in right else "left", overflow="fold", no_wrap=i in whole, min_width=longest
+        )
     for row in rows:
         table.add_row(*(Text(cell) for cell in row))
     return table

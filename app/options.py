@@ -9,7 +9,10 @@ import click
 design_argument = click.argument("design")
 
 set_option = click.option(
-    "--set", "overrides", multiple=True, metavar="KEY=VALUE",
+    "--set",
+    "overrides",
+    multiple=True,
+    metavar="KEY=VALUE",
     help="Override a value of the design file; dotted keys as in the file, repeatable.",
 )
 
@@ -24,7 +27,10 @@ seed_option = click.option("--seed", type=click.IntRange(min=0), help="Seed of t
 poses_option = click.option("--poses", type=click.IntRange(min=1), help="How many poses to visit (sampling.n_poses).")
 
 output_file_option = click.option(
-    "-o", "--output", type=click.Path(dir_okay=False, path_type=Path), help="File to write instead of stdout.",
+    "-o",
+    "--output",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="File to write instead of stdout.",
 )
 
 

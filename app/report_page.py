@@ -53,8 +53,10 @@ def print_report(report: Report, design: Design, *, strict: bool, with_facts: bo
     for finding in report.findings:
         _print_finding(console, finding, design)
     heading(console, "looked at")
-    rows = [(r.check, ", ".join(f"{n} {what}" for what, n in r.looked_at.items()), str(len(r.findings)))
-            for r in report.results]
+    rows = [
+        (r.check, ", ".join(f"{n} {what}" for what, n in r.looked_at.items()), str(len(r.findings)))
+        for r in report.results
+    ]
     console.print(table_of(("check", "looked at", "findings"), rows, right=(2,)))
     if with_facts:
         for result in report.results:
@@ -64,8 +66,12 @@ def print_report(report: Report, design: Design, *, strict: bool, with_facts: bo
     counts = ", ".join(f"{report.count(s)} {s.value}{'' if report.count(s) == 1 else 's'}" for s in Severity)
     passes = report.passes(strict=strict)
     console.print()
-    console.print(Text.assemble((("PASS" if passes else "FAIL"), "bold green" if passes else "bold red"),
-                                f"  {design.name}: {counts}{' (strict)' if strict else ''}, design {design.hash[:12]}"))
+    console.print(
+        Text.assemble(
+            (("PASS" if passes else "FAIL"), "bold green" if passes else "bold red"),
+            f"  {design.name}: {counts}{' (strict)' if strict else ''}, design {design.hash[:12]}",
+        )
+    )
 
 
 def print_release(result: ReleaseResult) -> None:
@@ -101,8 +107,13 @@ def _labelled(shown: str, name: str) -> Text:
 
 def _print_finding(console: Console, finding: Finding, design: Design) -> None:
     """Rule and subjects; the message; then one line each for numbers, pose, place and cure."""
-    console.print(Text.assemble((finding.severity.value, _STYLES[finding.severity]), f" [{finding.rule}] ",
-                                (" / ".join(finding.subject), "bold")))
+    console.print(
+        Text.assemble(
+            (finding.severity.value, _STYLES[finding.severity]),
+            f" [{finding.rule}] ",
+            (" / ".join(finding.subject), "bold"),
+        )
+    )
     _indented(console, finding.message)
     if finding.measured is not None:
         limit = "" if finding.limit is None else f", limit {digits(finding.limit)} {finding.unit}"
@@ -151,8 +162,14 @@ def _as_limits(value: Any) -> Sequence[Mapping[str, Any]] | None:
         ends = {end: file_from_inside(row[end], unit) for end in ("lower", "declared_lower", "declared_upper", "upper")}
         stops = [row.get(f"stopped_{side}_by") for side in ("below", "above")]
         stopped = "nothing" if row.get("unlimited") else "; ".join(dict.fromkeys(stop for stop in stops if stop))
-        rows.append({"joint": joint, **{end.replace("_", " "): f"{v:.2f}" for end, v in ends.items()}, "unit": unit,
-                     "stopped by": stopped})
+        rows.append(
+            {
+                "joint": joint,
+                **{end.replace("_", " "): f"{v:.2f}" for end, v in ends.items()},
+                "unit": unit,
+                "stopped by": stopped,
+            }
+        )
     return rows
 
 

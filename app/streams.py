@@ -13,12 +13,17 @@ import numpy as np
 from .rows import Column, Numbers, Rows, numbers_from_text, numbers_of, read_rows
 
 input_option = click.option(
-    "-i", "--input", "source", type=click.Path(dir_okay=False, allow_dash=True),
+    "-i",
+    "--input",
+    "source",
+    type=click.Path(dir_okay=False, allow_dash=True),
     help="File of rows to read; - or nothing reads a pipe. Without pipe or file the home pose is taken.",
 )
 
 format_option = click.option(
-    "--format", "form", type=click.Choice(["csv", "jsonl"]),
+    "--format",
+    "form",
+    type=click.Choice(["csv", "jsonl"]),
     help="Form of input and output; by default the input is recognised and the output follows it.",
 )
 
@@ -38,7 +43,11 @@ def rows_given(source: str | None, form: str | None) -> Rows | None:
 
 
 def numbers_given(
-    texts: tuple[str, ...], option: str, rows: Rows | None, columns: tuple[Column, ...], ignored: tuple[str, ...],
+    texts: tuple[str, ...],
+    option: str,
+    rows: Rows | None,
+    columns: tuple[Column, ...],
+    ignored: tuple[str, ...],
     home: np.ndarray,
 ) -> Numbers:
     """Numbers from the option, else from the rows, else the home values, shape (n, n_columns) [mm, rad]."""

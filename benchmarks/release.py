@@ -12,7 +12,7 @@ import tempfile
 import time
 from pathlib import Path
 
-COMMAND = [sys.executable, "-m", "linkwright.app.cli"]
+COMMAND = [sys.executable, "-m", "linkwright.app"]
 
 
 def seconds(arguments: list[str], cache: Path) -> float:

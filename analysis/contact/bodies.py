@@ -113,9 +113,7 @@ def scan_pair(
     return PairScan(scan=scan, swallowed_a=swallowed_a, swallowed_b=swallowed_b)
 
 
-def _scan(
-    a: ContactBody, b: ContactBody, Ts: Array, need: float, share: float, faces: JointedFaces | None
-) -> PoseScan:
+def _scan(a: ContactBody, b: ContactBody, Ts: Array, need: float, share: float, faces: JointedFaces | None) -> PoseScan:
     """Distances over all poses; pairs of faces that keep their distance are looked at once.
 
     The first pose gives an upper bound of the steady pairs' distance, and so of the least one. If it is below
@@ -126,13 +124,15 @@ def _scan(
         return scan_poses(a.tree, b.tree, Ts, need=need, share=share)
 
     def at_one(k: int) -> PoseScan:
-        scan = scan_poses(a.tree, b.tree, Ts[k : k + 1], need=need, share=share, exempt_a=faces.exempt_a,
-                          exempt_b=faces.exempt_b)
+        scan = scan_poses(
+            a.tree, b.tree, Ts[k : k + 1], need=need, share=share, exempt_a=faces.exempt_a, exempt_b=faces.exempt_b
+        )
         return dataclasses.replace(scan, pose=k if scan.pose == 0 else -1)
 
     first = at_one(0)
-    moving = scan_poses(a.tree, b.tree, Ts, need=need, share=share, cutoff=first.value, exempt_a=faces.steady_a,
-                        exempt_b=faces.steady_b)
+    moving = scan_poses(
+        a.tree, b.tree, Ts, need=need, share=share, cutoff=first.value, exempt_a=faces.steady_a, exempt_b=faces.steady_b
+    )
     looked, values = [moving, first], moving.values
     if first.value < need:
         far = int(np.argmax(values))

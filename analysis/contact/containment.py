@@ -19,9 +19,14 @@ from .triangles import closest_on_triangle
 Array = np.ndarray
 
 #: Directions of no symmetry, so that a ray seldom runs along a face or through an edge of a machined part.
-DIRECTIONS = np.array([
-    [0.4143, 0.5631, 0.7150], [-0.6174, 0.2719, 0.7381], [0.3307, -0.8513, -0.4074], [-0.2251, -0.3499, 0.9093],
-])
+DIRECTIONS = np.array(
+    [
+        [0.4143, 0.5631, 0.7150],
+        [-0.6174, 0.2719, 0.7381],
+        [0.3307, -0.8513, -0.4074],
+        [-0.2251, -0.3499, 0.9093],
+    ]
+)
 #: A ray within this share of a triangle's border, or this near to its start [mm], does not count.
 DOUBT = 1e-7
 
@@ -195,8 +200,13 @@ def find_inside(tree: ContactTree, points: Array, Ts: Array) -> Array:
         Ts: poses of that body seen from the solid, shape (n, 4, 4) [mm].
     """
     out = np.full(len(Ts), -1, np.int64)
-    _find_inside(tree.arrays, np.ascontiguousarray(points, dtype=float).reshape(-1, 3),
-                 np.ascontiguousarray(Ts, dtype=float), DIRECTIONS, out)
+    _find_inside(
+        tree.arrays,
+        np.ascontiguousarray(points, dtype=float).reshape(-1, 3),
+        np.ascontiguousarray(Ts, dtype=float),
+        DIRECTIONS,
+        out,
+    )
     return out
 
 

@@ -49,7 +49,11 @@ def _mark(
 
 
 def find_crossings(
-    tree_a: ContactTree, tree_b: ContactTree, T_ab: Array, *, exempt_a: Array | None = None,
+    tree_a: ContactTree,
+    tree_b: ContactTree,
+    T_ab: Array,
+    *,
+    exempt_a: Array | None = None,
     exempt_b: Array | None = None,
 ) -> Array:
     """Groups of A and B whose triangles cross at a pose, exempt pairs left out, shape (k, 2).

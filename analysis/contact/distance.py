@@ -136,8 +136,18 @@ def _enough(best: float, exact_below: float, share: float) -> float:
 
 @kernel
 def _leaves(
-    a: Arrays, bits_a: Array, i: int, b: Arrays, bits_b: Array, j: int, T: Array, best: float,
-    witness: Array, points: Array, moved: Array, s: Array,
+    a: Arrays,
+    bits_a: Array,
+    i: int,
+    b: Arrays,
+    bits_b: Array,
+    j: int,
+    T: Array,
+    best: float,
+    witness: Array,
+    points: Array,
+    moved: Array,
+    s: Array,
 ) -> float:
     """The least of `best` and the distances of the pieces of two leaves; keeps witness and points up to date."""
     first = b.links[j, 1]
@@ -156,8 +166,21 @@ def _leaves(
 
 @kernel
 def _nearest(
-    a: Arrays, nodes_a: Array, bits_a: Array, b: Arrays, nodes_b: Array, bits_b: Array, T: Array, best: float,
-    exact_below: float, share: float, witness: Array, points: Array, stack: Array, bounds: Array, moved: Array,
+    a: Arrays,
+    nodes_a: Array,
+    bits_a: Array,
+    b: Arrays,
+    nodes_b: Array,
+    bits_b: Array,
+    T: Array,
+    best: float,
+    exact_below: float,
+    share: float,
+    witness: Array,
+    points: Array,
+    stack: Array,
+    bounds: Array,
+    moved: Array,
     s: Array,
 ) -> float:
     """The least of `best` and the distance of two trees at pose T; see the module's docstring."""
@@ -195,8 +218,20 @@ def _nearest(
 
 @kernel
 def _scan(
-    a: Arrays, nodes_a: Array, bits_a: Array, b: Arrays, nodes_b: Array, bits_b: Array, Ts: Array, order: Array,
-    need: float, best: float, share: float, values: Array, witness: Array, points: Array,
+    a: Arrays,
+    nodes_a: Array,
+    bits_a: Array,
+    b: Arrays,
+    nodes_b: Array,
+    bits_b: Array,
+    Ts: Array,
+    order: Array,
+    need: float,
+    best: float,
+    share: float,
+    values: Array,
+    witness: Array,
+    points: Array,
 ) -> tuple[float, int]:
     """Visits poses in an order; writes `values`; returns the least distance and its pose (or the first best, -1)."""
     stack, bounds = np.empty((512, 2), np.int32), np.empty(512)
@@ -274,8 +309,15 @@ def scan_poses(
 
 
 def _run(
-    tree_a: ContactTree, tree_b: ContactTree, Ts: Array, need: float, share: float, cutoff: float,
-    exempt_a: Array | None, exempt_b: Array | None, warm: tuple[int, int] | None,
+    tree_a: ContactTree,
+    tree_b: ContactTree,
+    Ts: Array,
+    need: float,
+    share: float,
+    cutoff: float,
+    exempt_a: Array | None,
+    exempt_b: Array | None,
+    warm: tuple[int, int] | None,
 ) -> tuple[PoseScan, tuple[int, int]]:
     nodes_a, bits_a = group_bits(tree_a, exempt_a)
     nodes_b, bits_b = group_bits(tree_b, exempt_b)
@@ -284,8 +326,22 @@ def _run(
     order = np.argsort(gaps, kind="stable")
     values, points = np.empty(len(Ts)), np.empty(6)
     witness = np.array(warm if warm is not None else (-1, -1), dtype=np.int64)
-    best, pose = _scan(tree_a.arrays, nodes_a, bits_a, tree_b.arrays, nodes_b, bits_b, np.ascontiguousarray(Ts),
-                       order, float(need), float(cutoff), float(share), values, witness, points)
+    best, pose = _scan(
+        tree_a.arrays,
+        nodes_a,
+        bits_a,
+        tree_b.arrays,
+        nodes_b,
+        bits_b,
+        np.ascontiguousarray(Ts),
+        order,
+        float(need),
+        float(cutoff),
+        float(share),
+        values,
+        witness,
+        points,
+    )
     if pose < 0:
         return PoseScan(value=np.inf, pose=-1, point_a=None, point_b=None, values=values), (-1, -1)
     points.flags.writeable = False

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 Array = np.ndarray
 
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Overlap:
     """What two meshes share.
@@ -26,6 +27,7 @@ class Overlap:
     volume: float
     centre: Array | None
 
+
 def build_manifold(mesh: Mesh, where: str) -> Any:
     """The mesh as manifold3d takes it.
 
@@ -35,13 +37,16 @@ def build_manifold(mesh: Mesh, where: str) -> Any:
     import manifold3d
 
     # The binding takes no locked arrays: hence copies.
-    body = manifold3d.Manifold(manifold3d.Mesh64(
-        vert_properties=np.array(mesh.vertices, dtype=np.float64),
-        tri_verts=np.array(mesh.triangles, dtype=np.uint64),
-    ))
+    body = manifold3d.Manifold(
+        manifold3d.Mesh64(
+            vert_properties=np.array(mesh.vertices, dtype=np.float64),
+            tri_verts=np.array(mesh.triangles, dtype=np.uint64),
+        )
+    )
     if body.status() != manifold3d.Error.NoError:
         raise BuildError(where, f"its mesh does not bound a volume ({body.status().name}); overlaps cannot be measured")
     return body
+
 
 def compute_overlap(a: Any, b: Any, T_ab: Array) -> Overlap:
     """The intersection of two bodies of `build_manifold`, B placed at T_ab, shape (4, 4) [mm]."""

@@ -87,7 +87,11 @@ class ContactTree:
 
 
 def build_tree(
-    triangles: Array, groups: Array | None = None, *, classes: Array | None = None, max_edge: float = MAX_EDGE,
+    triangles: Array,
+    groups: Array | None = None,
+    *,
+    classes: Array | None = None,
+    max_edge: float = MAX_EDGE,
     leaf_size: int = LEAF_SIZE,
 ) -> ContactTree:
     """The tree over a set of triangles.
@@ -118,7 +122,10 @@ def build_tree(
     nodes, links = _grow(pieces, order, of_piece, leaf_size)
     sources = sources[order]
     return ContactTree(
-        nodes=nodes, links=links, pieces=np.ascontiguousarray(pieces[order]), sources=sources,
+        nodes=nodes,
+        links=links,
+        pieces=np.ascontiguousarray(pieces[order]),
+        sources=sources,
         groups=np.ascontiguousarray(of_triangle[sources]),
     )
 
@@ -299,9 +306,7 @@ def _halve(pieces: Array, order: Array, lo: int, hi: int, axis: Array) -> int:
     keys = np.empty(hi - lo)
     for i in range(lo, hi):
         t = pieces[order[i]]
-        keys[i - lo] = (
-            axis[0] * (t[0] + t[3] + t[6]) + axis[1] * (t[1] + t[4] + t[7]) + axis[2] * (t[2] + t[5] + t[8])
-        )
+        keys[i - lo] = axis[0] * (t[0] + t[3] + t[6]) + axis[1] * (t[1] + t[4] + t[7]) + axis[2] * (t[2] + t[5] + t[8])
     mid = (hi - lo) // 2
     left, right = 0, hi - lo - 1
     while left < right:

@@ -13,9 +13,7 @@ Array = np.ndarray
 
 
 @kernel
-def closest_on_triangle(
-    px: float, py: float, pz: float, B: Array, j: int
-) -> tuple[float, float, float, float]:
+def closest_on_triangle(px: float, py: float, pz: float, B: Array, j: int) -> tuple[float, float, float, float]:
     """Squared distance of a point from triangle j of B, and the nearest point of it.
 
     Source: Ericson, Real-Time Collision Detection, section 5.1.5. A triangle without area falls to its edges.

@@ -26,8 +26,14 @@ from ..streams import format_option, input_option, numbers_given, rows_given, te
 @json_option
 @debug_option
 def command(
-    design: str, source: str | None, output: Path | None, form: str | None, joints: tuple[str, ...], near: str | None,
-    overrides: tuple[str, ...], as_json: bool,
+    design: str,
+    source: str | None,
+    output: Path | None,
+    form: str | None,
+    joints: tuple[str, ...],
+    near: str | None,
+    overrides: tuple[str, ...],
+    as_json: bool,
 ) -> int:
     """Poses of DESIGN for values of its driven joints.
 

@@ -27,8 +27,15 @@ from ..streams import format_option, input_option, numbers_given, rows_given, te
 @json_option
 @debug_option
 def command(
-    design: str, source: str | None, output: Path | None, form: str | None, poses: tuple[str, ...], branch: str | None,
-    with_passive: bool, overrides: tuple[str, ...], as_json: bool,
+    design: str,
+    source: str | None,
+    output: Path | None,
+    form: str | None,
+    poses: tuple[str, ...],
+    branch: str | None,
+    with_passive: bool,
+    overrides: tuple[str, ...],
+    as_json: bool,
 ) -> int:
     """Joint values for poses of DESIGN.
 

@@ -13,8 +13,12 @@ from ..supplies_page import print_supplies, read_supplies
 
 
 @click.command("list", short_help="The mechanisms of the catalogue.")
-@click.option("--supplies", "with_supplies", is_flag=True,
-              help="Instead the bearings, screws, motors and materials that a design file can name.")
+@click.option(
+    "--supplies",
+    "with_supplies",
+    is_flag=True,
+    help="Instead the bearings, screws, motors and materials that a design file can name.",
+)
 @json_option
 @debug_option
 def command(with_supplies: bool, as_json: bool) -> None:

@@ -15,8 +15,12 @@ from ..options import debug_option, json_option
 
 @click.command("new", short_help="Write a commented design file to start from.")
 @click.argument("mechanism")
-@click.option("-o", "--output", type=click.Path(dir_okay=False, path_type=Path),
-              help="File to write (default: MECHANISM.toml); - writes to stdout.")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="File to write (default: MECHANISM.toml); - writes to stdout.",
+)
 @click.option("--force", is_flag=True, help="Overwrite the file if it exists.")
 @json_option
 @debug_option

@@ -25,8 +25,13 @@ from ..progress import progress_bars
 
 @click.command("release", short_help="Check a design and write all its files.")
 @design_argument
-@click.option("-o", "--output", required=True, type=click.Path(file_okay=False, path_type=Path),
-              help="Folder to write; all or nothing.")
+@click.option(
+    "-o",
+    "--output",
+    required=True,
+    type=click.Path(file_okay=False, path_type=Path),
+    help="Folder to write; all or nothing.",
+)
 @set_option
 @seed_option
 @poses_option
@@ -34,7 +39,12 @@ from ..progress import progress_bars
 @json_option
 @debug_option
 def command(
-    design: str, output: Path, overrides: tuple[str, ...], seed: int | None, poses: int | None, strict: bool,
+    design: str,
+    output: Path,
+    overrides: tuple[str, ...],
+    seed: int | None,
+    poses: int | None,
+    strict: bool,
     as_json: bool,
 ) -> int:
     """Check DESIGN and write its manufacturing files and controller configuration into a folder.
@@ -52,7 +62,9 @@ def command(
     if as_json:
         manifest = None if result.manifest is None else result.manifest.model_dump(mode="json")
         table = {
-            "path": str(result.path), "written": result.written, "manifest": manifest,
+            "path": str(result.path),
+            "written": result.written,
+            "manifest": manifest,
             "findings": findings_json(result.report, loaded, strict=strict, with_places=True),
         }
         click.echo(json.dumps(table, indent=2, ensure_ascii=False, allow_nan=False))

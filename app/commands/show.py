@@ -40,8 +40,13 @@ def command(design: str, as_toml: bool, overrides: tuple[str, ...], as_json: boo
 def _facts(design: Design) -> dict[str, Any]:
     mechanism = design.mechanism
     return {
-        "name": design.name, "title": mechanism.title, "source": mechanism.source, "path": design.path,
-        "design_hash": design.hash, "branches": list(mechanism.branches), "assembly_mode": mechanism.assembly_mode,
+        "name": design.name,
+        "title": mechanism.title,
+        "source": mechanism.source,
+        "path": design.path,
+        "design_hash": design.hash,
+        "branches": list(mechanism.branches),
+        "assembly_mode": mechanism.assembly_mode,
         "design": design.resolved(),
         "derived": {
             key: {"value": file_from_inside(value, unit), "unit": unit, "meaning": meaning}
@@ -50,8 +55,13 @@ def _facts(design: Design) -> dict[str, Any]:
         "home": {c.key: file_from_inside(v, c.unit) for c, v in zip(mechanism.task, mechanism.home, strict=True)},
         "joints": [_joint(joint) for joint in mechanism.joints],
         "bodies": [
-            {"name": body.name, "kind": body.kind, "group": body.group, "n_parts": len(body.parts),
-             "n_purchased": sum(bool(part.purchased) for part in body.parts)}
+            {
+                "name": body.name,
+                "kind": body.kind,
+                "group": body.group,
+                "n_parts": len(body.parts),
+                "n_purchased": sum(bool(part.purchased) for part in body.parts),
+            }
             for body in mechanism.bodies
         ],
     }
@@ -59,8 +69,12 @@ def _facts(design: Design) -> dict[str, Any]:
 
 def _joint(joint: Joint) -> dict[str, Any]:
     return {
-        "name": joint.name, "kind": joint.kind.value, "parent": joint.parent, "child": joint.child,
-        "is_active": joint.is_active, "unit": joint.unit,
+        "name": joint.name,
+        "kind": joint.kind.value,
+        "parent": joint.parent,
+        "child": joint.child,
+        "is_active": joint.is_active,
+        "unit": joint.unit,
         f"lower_{joint.unit}": file_from_inside(joint.lower, joint.unit),
         f"upper_{joint.unit}": file_from_inside(joint.upper, joint.unit),
     }
@@ -84,16 +98,27 @@ def _print(design: Design) -> None:
         columns = ("key (* changed)", "value", "unit", "symbol", "meaning")
         console.print(table_of(columns, rows, right=(1,), whole=(0, 1)))
     heading(console, "derived numbers")
-    derived = [(key, digits(file_from_inside(value, unit)), unit, meaning)
-               for key, (value, unit, meaning) in mechanism.derived_numbers().items()]
+    derived = [
+        (key, digits(file_from_inside(value, unit)), unit, meaning)
+        for key, (value, unit, meaning) in mechanism.derived_numbers().items()
+    ]
     console.print(table_of(("number", "value", "unit", "meaning"), derived, right=(1,)))
     heading(console, "home pose")
     home = [(c.key, digits(file_from_inside(v, c.unit))) for c, v in zip(mechanism.task, mechanism.home, strict=True)]
     console.print(table_of(("coordinate", "value"), home, right=(1,)))
     heading(console, f"{len(mechanism.joints)} joints, {mechanism.n_active} driven")
-    joints = [(j.name, j.kind.value, f"{j.parent} - {j.child}", digits(file_from_inside(j.lower, j.unit)),
-               digits(file_from_inside(j.upper, j.unit)), j.unit, "driven" if j.is_active else "")
-              for j in mechanism.joints]
+    joints = [
+        (
+            j.name,
+            j.kind.value,
+            f"{j.parent} - {j.child}",
+            digits(file_from_inside(j.lower, j.unit)),
+            digits(file_from_inside(j.upper, j.unit)),
+            j.unit,
+            "driven" if j.is_active else "",
+        )
+        for j in mechanism.joints
+    ]
     console.print(table_of(("joint", "kind", "between", "lower", "upper", "unit", ""), joints, right=(3, 4)))
     n_parts = sum(len(body.parts) for body in mechanism.bodies)
     heading(console, f"{len(mechanism.bodies)} bodies, {n_parts} parts")

@@ -90,7 +90,7 @@ class Kernel:
             )
         n = len(rows)
         out = self.buffer(n) if into is None else into
-        if out.shape != (n, self._length) or out.ctypes.data % (8 * WIDTH):
+        if out.shape != (n, self._length) or (n and out.ctypes.data % (8 * WIDTH)):
             raise ValueError(f"{self.program.name}: `into` must be buffer({n}) of this kernel")
         whole = n // WIDTH * WIDTH
         self._run(rows[:whole], numbers, out[:whole], n_threads or os.cpu_count() or 1)

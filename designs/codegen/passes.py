@@ -56,11 +56,13 @@ def lowered(program: Program, *, is_polynomial: bool) -> Program:
         if node.op in ("acos", "asin"):
             clamped = where(args[0] < -1.0, -1.0, where(args[0] > 1.0, 1.0, args[0]))
             return graph.make(node.op, clamped) if not is_polynomial else _LOWERED[node.op](clamped)
+        if is_polynomial and node.op == "div":
+            return _divided(*args)
         if is_polynomial and node.op in _LOWERED:
             return _LOWERED[node.op](*args)
         return copied(graph, node, args)
 
-    return program.rebuild(rule).rebuild(copied)
+    return program.rebuild(rule)
 
 
 _LOWERED: dict[str, Callable[..., Node]] = {
@@ -70,6 +72,16 @@ _LOWERED: dict[str, Callable[..., Node]] = {
     "acos": lowered_acos,
     "asin": lowered_asin,
 }
+
+
+def _divided(a: Node, b: Node) -> Node:
+    """The quotient, with constant factors of b moved to a: all divisions by multiples of a number share its inverse."""
+    while b.op == "mul" and (b.args[0].is_const() or b.args[1].is_const()):
+        constant, b = b.args if b.args[0].is_const() else b.args[::-1]
+        if not 1e-100 < abs(constant.value) < 1e100:
+            return a / (b * constant)
+        a = a * (1.0 / constant.value)
+    return a / b
 
 
 def _expanded(graph: Graph, angle: Node) -> tuple[Node, Node] | None:

@@ -80,15 +80,16 @@ def extreme_eigenvalues(matrix: list[list[Number]]) -> tuple[Number, Number]:
     t = tridiagonal(matrix)
     trace = _dot(t.diagonal, [1.0] * n)
     low: Number = 0.0
-    high: Number = trace
     if n == 2:
         half = 0.5 * (t.diagonal[0] - t.diagonal[1])
         root = sqrt(half * half + t.squares[0])
-        high = 0.5 * trace + root
+        high: Number = 0.5 * trace + root
         return fmax((t.diagonal[0] * t.diagonal[1] - t.squares[0]) / fmax(high, _TINY), 0.0), high
     coefficients = characteristic(t)
+    high = _upper_bound(n, trace, coefficients[2])
     for _ in range(COARSE_STEPS):
         low = low - _step(n, _horner(coefficients, low))
+    for _ in range(COARSE_STEPS - 1):
         high = high - _step(n, _horner(coefficients, high))
     fixed = [*t.diagonal, *t.squares]
     first = _returned(t, low, high, trace)
@@ -100,6 +101,11 @@ def extreme_eigenvalues(matrix: list[list[Number]]) -> tuple[Number, Number]:
         MOST_STEPS,
     )
     return fmax(low, 0.0), high
+
+
+def _upper_bound(n: int, trace: Number, second: Number) -> Number:
+    """Where Laguerre's step from infinity ends: n real roots of this sum and sum of products lie below."""
+    return (trace + sqrt((n - 1.0) * ((n - 1.0) * (trace * trace) - (2.0 * n) * second))) * (1.0 / n)
 
 
 def _returned(t: Tridiagonal, low: Number, high: Number, trace: Number) -> list[Number]:

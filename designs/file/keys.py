@@ -74,8 +74,14 @@ def keys_of(entry: Entry) -> dict[str, Key]:
 def section_keys(table: str, section: Any) -> list[Key]:
     """The keys of one table; defaults are the values of the instance."""
     return [
-        Key(table=table, leaf=f.key, field=f.name, kind=type(f.default), meta=f.meta,
-            default=shown(getattr(section, f.name), type(f.default), f.meta.unit))
+        Key(
+            table=table,
+            leaf=f.key,
+            field=f.name,
+            kind=type(f.default),
+            meta=f.meta,
+            default=shown(getattr(section, f.name), type(f.default), f.meta.unit),
+        )
         for f in fields_of(section)
     ]
 
@@ -105,7 +111,7 @@ def workspace_leaf(coordinate: Coordinate, end: str) -> str:
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """"; did you mean a or b?", or nothing if no known word is near; the second only if it is about as near."""
+    """ "; did you mean a or b?", or nothing if no known word is near; the second only if it is about as near."""
     near = near_words(word, known)
     return f"; did you mean {' or '.join(near)}?" if near else ""
 
@@ -142,8 +148,16 @@ def _workspace_keys(entry: Entry) -> list[Key]:
         for end, value in (("min", low), ("max", high)):
             leaf = workspace_leaf(c, end)
             meta = _meta(c.unit, f"{'least' if end == 'min' else 'greatest'} {c.name} at which the design must work")
-            keys.append(Key(table="workspace", leaf=leaf, field=f"{c.name}_{end}", kind=float, meta=meta,
-                            default=file_from_inside(value, c.unit)))
+            keys.append(
+                Key(
+                    table="workspace",
+                    leaf=leaf,
+                    field=f"{c.name}_{end}",
+                    kind=float,
+                    meta=meta,
+                    default=file_from_inside(value, c.unit),
+                )
+            )
     return keys
 
 

@@ -38,8 +38,10 @@ def build_model(entry: Entry) -> type[BaseModel]:
     keys = keys_of(entry)
     tables = _nested(keys.values())
     fields = _fields_of_table(entry, tables, "", entry.title)
-    fields["field_allowed"] = (list[AllowedTable], Field(default_factory=list, alias="allowed",
-                                                        description="contacts that are no collision"))
+    fields["field_allowed"] = (
+        list[AllowedTable],
+        Field(default_factory=list, alias="allowed", description="contacts that are no collision"),
+    )
     title = _camel(entry.name) + "Design"
     return create_model(title, __config__=_CONFIG, __doc__=f"A design file of {entry.title}.", **fields)
 
@@ -67,9 +69,13 @@ def combined_schema(entries: Iterable[Entry]) -> dict[str, Any]:
         for name, schema in zip(names, branches, strict=True)
     ]
     return {
-        "$schema": SCHEMA_DIALECT, "title": "linkwright design", "type": "object", "required": ["mechanism"],
+        "$schema": SCHEMA_DIALECT,
+        "title": "linkwright design",
+        "type": "object",
+        "required": ["mechanism"],
         "properties": {"mechanism": {"enum": names, "description": "a name of the catalogue"}},
-        "allOf": conditions, "$defs": definitions,
+        "allOf": conditions,
+        "$defs": definitions,
     }
 
 

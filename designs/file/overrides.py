@@ -40,8 +40,9 @@ def parse_overrides(texts: Sequence[str]) -> tuple[Override, ...]:
         except tomllib.TOMLDecodeError:
             words = []
         if not words:
-            raise DesignFileError(COMMAND_LINE, None, text, None,
-                                  "must be key=value with a dotted key, such as sampling.n_poses=200")
+            raise DesignFileError(
+                COMMAND_LINE, None, text, None, "must be key=value with a dotted key, such as sampling.n_poses=200"
+            )
         override = Override(words=tuple(words), text=value.strip())
         parsed.pop(override.dotted, None)
         parsed[override.dotted] = override

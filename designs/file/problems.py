@@ -135,4 +135,3 @@ def _about(key: Key | None) -> str:
 
 def _number(key: Key) -> str:
     return f"{key.default:g} {key.meta.unit}".strip() if isinstance(key.default, int | float) else str(key.default)
-

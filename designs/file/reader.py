@@ -51,8 +51,9 @@ def load_design(design: str, overrides: Sequence[str] = (), *, find_entry: FindE
         files = sorted(str(p) for p in Path().glob("*.toml"))
         hint = did_you_mean(design, [*error.known, *files])
         known = ", ".join(error.known)
-        raise DesignFileError(design, None, "design", None,
-                              f"is neither a file nor a mechanism{hint}; mechanisms: {known}") from error
+        raise DesignFileError(
+            design, None, "design", None, f"is neither a file nor a mechanism{hint}; mechanisms: {known}"
+        ) from error
     if not overrides:
         return entry.default_design()
     return _resolve({"mechanism": entry.name}, parse_overrides(overrides), "", {}, find_entry)
@@ -89,8 +90,13 @@ def _resolve(
     workspace = _workspace(entry, model, keys, places)
     mechanism = _built(partial(entry.build, sections), keys, given, places)
     return Design(
-        name=_value(model, "name"), mechanism=mechanism, workspace=workspace, **common,
-        allowed=_allowed(model, mechanism, places), path=path, lines=lines,
+        name=_value(model, "name"),
+        mechanism=mechanism,
+        workspace=workspace,
+        **common,
+        allowed=_allowed(model, mechanism, places),
+        path=path,
+        lines=lines,
     )
 
 
@@ -118,25 +124,32 @@ def _syntax_error(path: str, text: str, error: tomllib.TOMLDecodeError) -> Desig
     line = int(place[1])
     lines = text.splitlines()
     shown = lines[line - 1].strip() if 0 < line <= len(lines) else ""
-    return DesignFileError(path, line, f"not TOML in `{shown}`" if shown else "not TOML", None,
-                           f"{words[: place.start()]} (column {place[2]})")
+    return DesignFileError(
+        path,
+        line,
+        f"not TOML in `{shown}`" if shown else "not TOML",
+        None,
+        f"{words[: place.start()]} (column {place[2]})",
+    )
 
 
-def _entry_of(
-    table: Mapping[str, Any], overrides: Sequence[Override], places: Places, find_entry: FindEntry
-) -> Entry:
+def _entry_of(table: Mapping[str, Any], overrides: Sequence[Override], places: Places, find_entry: FindEntry) -> Entry:
     name = next((o.text.strip("\"'") for o in overrides if o.dotted == "mechanism"), table.get("mechanism"))
     known = ", ".join(catalogue.names())
     if name is None:
         raise places.error("mechanism", None, f"is required: a name of the catalogue ({known})")
     if not isinstance(name, str):
-        raise places.error("mechanism", None if isinstance(name, dict | list) else name,
-                           f"must be text in quotes: a name of the catalogue ({known})")
+        raise places.error(
+            "mechanism",
+            None if isinstance(name, dict | list) else name,
+            f"must be text in quotes: a name of the catalogue ({known})",
+        )
     try:
         return find_entry(name)
     except UnknownNameError as error:
-        raise places.error("mechanism", name,
-                           f"one of {', '.join(error.known)}{did_you_mean(name, error.known)}") from error
+        raise places.error(
+            "mechanism", name, f"one of {', '.join(error.known)}{did_you_mean(name, error.known)}"
+        ) from error
 
 
 def _plain_keys(table: Mapping[str, Any], prefix: str = "") -> set[str]:
@@ -179,7 +192,8 @@ def _given_values(model: BaseModel, table: str) -> dict[str, Any]:
         model = getattr(model, f"table_{word}")
     fields = type(model).model_fields
     return {
-        str(fields[name].alias): getattr(model, name) for name in fields
+        str(fields[name].alias): getattr(model, name)
+        for name in fields
         if name in model.model_fields_set and name.startswith("field_")
     }
 
@@ -198,8 +212,11 @@ def _workspace(entry: Entry, model: BaseModel, keys: Mapping[str, Key], places: 
             if leaves["min"] in values:
                 given, other, side = "min", "max", "at most"
             shown = {end: values.get(leaf, keys[f"workspace.{leaf}"].default) for end, leaf in leaves.items()}
-            errors.append(places.error(f"workspace.{leaves[given]}", shown[given],
-                                       f"must be {side} {leaves[other]} = {shown[other]:g}"))
+            errors.append(
+                places.error(
+                    f"workspace.{leaves[given]}", shown[given], f"must be {side} {leaves[other]} = {shown[other]:g}"
+                )
+            )
     raise_all(errors)
     return Workspace(lower=tuple(ends["min"]), upper=tuple(ends["max"]))
 
@@ -225,8 +242,9 @@ def _built(make: Callable[[], Any], keys: Mapping[str, Key], given: set[str], pl
     try:
         return make()
     except ParameterError as error:
-        raise places.error(_dotted(error.field, keys, given | set(places.overridden)), error.value,
-                           error.allowed) from error
+        raise places.error(
+            _dotted(error.field, keys, given | set(places.overridden)), error.value, error.allowed
+        ) from error
 
 
 def _dotted(field: str, keys: Mapping[str, Key], given: set[str]) -> str:

@@ -35,18 +35,29 @@ def text_of(design: Design, *, entry: Entry | None = None) -> str:
         entry: the design's row of the catalogue, looked up by default.
     """
     entry = entry or catalogue.entry(design.mechanism.name)
-    banner = [entry.title, f"Source: {entry.source}", "",
-              "Resolved design: every number that was used, defaults included.", _UNITS_NOTE]
+    banner = [
+        entry.title,
+        f"Source: {entry.source}",
+        "",
+        "Resolved design: every number that was used, defaults included.",
+        _UNITS_NOTE,
+    ]
     return _text(entry, design.resolved(), banner)
 
 
 def example_of(name: str, *, entry: Entry | None = None) -> str:
     """The commented default file of a mechanism, for `linkwright new`."""
     entry = entry or catalogue.entry(name)
-    banner = [entry.title, f"Source: {entry.source}", "", _UNITS_NOTE, "",
-              "linkwright show FILE       resolved and derived numbers",
-              "linkwright check FILE      collisions, clearances and joint limits on the solids",
-              "linkwright release FILE -o DIR"]
+    banner = [
+        entry.title,
+        f"Source: {entry.source}",
+        "",
+        _UNITS_NOTE,
+        "",
+        "linkwright show FILE       resolved and derived numbers",
+        "linkwright check FILE      collisions, clearances and joint limits on the solids",
+        "linkwright release FILE -o DIR",
+    ]
     hint = _comment("Bodies that may touch are named, with the reason; all others must keep clearance.minimum_mm:")
     hint += ["# [[allowed]]", '# pair = ["one_body", "another_body"]', '# reason = "why they may touch"']
     return _text(entry, entry.default_design().resolved(), banner) + "\n" + "\n".join(hint) + "\n"
@@ -113,8 +124,11 @@ def _shared(keys: Sequence[Key]) -> dict[tuple[str, ...], list[str]]:
 
 
 def _shared_choices(keys: Sequence[Key]) -> list[str]:
-    return [line for choices, leaves in _shared(keys).items()
-            for line in _comment(f"{', '.join(leaves)}: one of {', '.join(choices)}")]
+    return [
+        line
+        for choices, leaves in _shared(keys).items()
+        for line in _comment(f"{', '.join(leaves)}: one of {', '.join(choices)}")
+    ]
 
 
 def _comment(text: str) -> list[str]:

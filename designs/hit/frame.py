@@ -204,7 +204,9 @@ class FrameShop:
     def _tapped(self, y: float, z: float) -> tuple[Hole, ...]:
         block = screw(_BLOCK_SCREW)
         return tuple(
-            Hole(x=y, y=z, top=s * self.half, upwards=s < 0, diameter=block.diameter, depth=self.half - 0.5, thread="M4")
+            Hole(
+                x=y, y=z, top=s * self.half, upwards=s < 0, diameter=block.diameter, depth=self.half - 0.5, thread="M4"
+            )
             for s in (-1.0, 1.0)
         )
 

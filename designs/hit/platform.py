@@ -86,7 +86,7 @@ def _star(p: HitParameters, s: HitPlatform, d: SphericalJointDimensions, low: fl
             countersink=True,
         )
     )
-    return Milled(slabs=tuple(slabs), windows=tuple(windows), holes=tuple(holes), edge_break=0.5)
+    return Milled(slabs=tuple(slabs), windows=tuple(windows), holes=tuple(holes))
 
 
 def _handle(s: HitPlatform) -> Turned:

@@ -23,8 +23,9 @@ SHAFT_GAP_DEPTH = 1.0
 TIP_CHAMFER = 0.5
 
 
-def _turned(*corners: tuple[float, float], holes: tuple[Hole, ...] = (),
-            hex_socket: tuple[float, float, float] | None = None) -> Turned:
+def _turned(
+    *corners: tuple[float, float], holes: tuple[Hole, ...] = (), hex_socket: tuple[float, float, float] | None = None
+) -> Turned:
     """A turned feature from corners (r, z); a corner equal to the one before it is left out."""
     kept = [corner for i, corner in enumerate(corners) if i == 0 or corner != corners[i - 1]]
     return Turned(profile=tuple(Vertex(r=r, z=z) for r, z in kept), holes=holes, hex_socket=hex_socket)
@@ -45,9 +46,20 @@ def bearing(name: str) -> Turned:
     row = supplies.bearing(name)
     bore, inner, outer, rim = row.bore / 2.0, row.inner_land / 2.0, row.outer_land / 2.0, row.outer / 2.0
     low, high = SHIELD_RECESS, row.width - SHIELD_RECESS
-    return _turned((bore, 0.0), (inner, 0.0), (inner, low), (outer, low), (outer, 0.0), (rim, 0.0),
-                   (rim, row.width), (outer, row.width), (outer, high), (inner, high), (inner, row.width),
-                   (bore, row.width))
+    return _turned(
+        (bore, 0.0),
+        (inner, 0.0),
+        (inner, low),
+        (outer, low),
+        (outer, 0.0),
+        (rim, 0.0),
+        (rim, row.width),
+        (outer, row.width),
+        (outer, high),
+        (inner, high),
+        (inner, row.width),
+        (bore, row.width),
+    )
 
 
 def pin(
@@ -96,36 +108,60 @@ def pin(
     else:
         corners += [(0.0, length)]
         corners += [(0.0, low + bore_depth), (r_bore, low + bore_depth)] if bore > 0.0 else []
-    return _turned(*corners, holes=_end_thread(thread, thread_depth, r, length, 0.0 if is_through else low + bore_depth,
-                                               is_through))
+    return _turned(
+        *corners,
+        holes=_end_thread(thread, thread_depth, r, length, 0.0 if is_through else low + bore_depth, is_through),
+    )
 
 
-def _check_pin(diameter: float, length: float, head_diameter: float, head_height: float, has_head: bool, bore: float,
-               chamfer: float) -> None:
+def _check_pin(
+    diameter: float,
+    length: float,
+    head_diameter: float,
+    head_height: float,
+    has_head: bool,
+    bore: float,
+    chamfer: float,
+) -> None:
     _require(diameter > 0.0, "pin.diameter", diameter, "must be above 0 mm")
-    _require(0.0 <= bore < diameter - 2.0 * chamfer, "pin.bore", bore,
-             f"must leave a wall: below diameter less chamfers, {diameter - 2.0 * chamfer:g} mm")
+    _require(
+        0.0 <= bore < diameter - 2.0 * chamfer,
+        "pin.bore",
+        bore,
+        f"must leave a wall: below diameter less chamfers, {diameter - 2.0 * chamfer:g} mm",
+    )
     _require(0.0 <= chamfer < diameter / 2.0, "pin.chamfer", chamfer, f"must lie in 0 to {diameter / 2.0:g} mm")
     _require(length > 2.0 * chamfer, "pin.length", length, f"must be above both chamfers, {2.0 * chamfer:g} mm")
     if has_head:
-        _require(head_diameter > diameter, "pin.head_diameter", head_diameter,
-                 f"must be above the pin's {diameter:g} mm")
+        _require(
+            head_diameter > diameter, "pin.head_diameter", head_diameter, f"must be above the pin's {diameter:g} mm"
+        )
         _require(head_height > chamfer, "pin.head_height", head_height, f"must be above the chamfer, {chamfer:g} mm")
 
 
-def _groove_corners(r: float, length: float, chamfer: float, start: float, r_bore: float,
-                    grooves: Sequence[tuple[float, float, float]]) -> list[tuple[float, float]]:
+def _groove_corners(
+    r: float, length: float, chamfer: float, start: float, r_bore: float, grooves: Sequence[tuple[float, float, float]]
+) -> list[tuple[float, float]]:
     corners: list[tuple[float, float]] = []
     edge = start
     for i, (z, diameter, width) in enumerate(sorted(grooves)):
-        _require(z > edge, f"pin.grooves[{i}].z", z,
-                 f"must lie above {edge:g} mm, where a chamfer, groove or head ends")
-        _require(2.0 * r_bore < diameter < 2.0 * r, f"pin.grooves[{i}].diameter", diameter,
-                 f"must lie between the bore, {2.0 * r_bore:g} mm, and the pin, {2.0 * r:g} mm")
+        _require(
+            z > edge, f"pin.grooves[{i}].z", z, f"must lie above {edge:g} mm, where a chamfer, groove or head ends"
+        )
+        _require(
+            2.0 * r_bore < diameter < 2.0 * r,
+            f"pin.grooves[{i}].diameter",
+            diameter,
+            f"must lie between the bore, {2.0 * r_bore:g} mm, and the pin, {2.0 * r:g} mm",
+        )
         _require(width > 0.0, f"pin.grooves[{i}].width", width, "must be above 0 mm")
         edge = z + width
-        _require(edge < length - chamfer, f"pin.grooves[{i}].width", width,
-                 f"must end below the chamfer at {length - chamfer:g} mm")
+        _require(
+            edge < length - chamfer,
+            f"pin.grooves[{i}].width",
+            width,
+            f"must end below the chamfer at {length - chamfer:g} mm",
+        )
         corners += [(r, z), (diameter / 2.0, z), (diameter / 2.0, edge), (r, edge)]
     return corners
 
@@ -212,8 +248,15 @@ def motor_body(name: str) -> Turned:
     if row.rear_length > 0.0:
         r_rear = row.rear_diameter / 2.0
         corners = [(0.0, back - row.rear_length), (r_rear, back - row.rear_length), (r_rear, back)]
-    corners += [(r_body, back), (r_body, 0.0), (r_pilot, 0.0), (r_pilot, row.pilot_length), (r_air, row.pilot_length),
-                (r_air, -SHAFT_GAP_DEPTH), (0.0, -SHAFT_GAP_DEPTH)]
+    corners += [
+        (r_body, back),
+        (r_body, 0.0),
+        (r_pilot, 0.0),
+        (r_pilot, row.pilot_length),
+        (r_air, row.pilot_length),
+        (r_air, -SHAFT_GAP_DEPTH),
+        (0.0, -SHAFT_GAP_DEPTH),
+    ]
     return _turned(*corners, holes=_mount_holes(row))
 
 
@@ -228,13 +271,23 @@ def motor(name: str) -> Turned:
     row = supplies.motor(name)
     body = [(v.r, v.z) for v in motor_body(name).profile]
     r, end, edge = row.shaft_diameter / 2.0, row.shaft_length, 0.2
-    return _turned(*body[:-3], (r, row.pilot_length), (r, end - edge), (r - edge, end), (0.0, end),
-                   holes=_mount_holes(row))
+    return _turned(
+        *body[:-3], (r, row.pilot_length), (r, end - edge), (r - edge, end), (0.0, end), holes=_mount_holes(row)
+    )
 
 
 def _mount_holes(row: supplies.Motor) -> tuple[Hole, ...]:
-    return (Hole(top=0.0, diameter=float(row.mount_screw.removeprefix("M")), depth=row.mount_depth,
-                 thread=row.mount_screw, n=row.n_mount, pitch_radius=row.mount_circle / 2.0, first=row.first_hole),)
+    return (
+        Hole(
+            top=0.0,
+            diameter=float(row.mount_screw.removeprefix("M")),
+            depth=row.mount_depth,
+            thread=row.mount_screw,
+            n=row.n_mount,
+            pitch_radius=row.mount_circle / 2.0,
+            first=row.first_hole,
+        ),
+    )
 
 
 _MATERIALS: dict[type, str] = {
@@ -285,5 +338,13 @@ def purchased_part(
     else:
         mass = row.mass
     runs = isinstance(row, _RUNNING) if runs_in_joint is None else runs_in_joint
-    return Part(name=name, feature=feature, at=at, material=material or _MATERIALS[type(row)], purchased=purchased,
-                mass=mass, runs_in_joint=runs, fit=fit)
+    return Part(
+        name=name,
+        feature=feature,
+        at=at,
+        material=material or _MATERIALS[type(row)],
+        purchased=purchased,
+        mass=mass,
+        runs_in_joint=runs,
+        fit=fit,
+    )

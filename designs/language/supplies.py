@@ -129,8 +129,9 @@ class Screw:
             ParameterError: names the screw and the lengths there are.
         """
         if length not in self.lengths:
-            raise ParameterError(f"length of {self.name}", length,
-                                 "one of " + ", ".join(f"{known:g}" for known in self.lengths) + " mm")
+            raise ParameterError(
+                f"length of {self.name}", length, "one of " + ", ".join(f"{known:g}" for known in self.lengths) + " mm"
+            )
 
     def length_for(self, needed: float) -> float:
         """The shortest length [mm] that is sold and is not below `needed`.
@@ -225,8 +226,11 @@ class Shim:
             ParameterError: names the shim and the thicknesses there are.
         """
         if thickness not in self.thicknesses:
-            raise ParameterError(f"thickness of {self.name}", thickness,
-                                 "one of " + ", ".join(f"{known:g}" for known in self.thicknesses) + " mm")
+            raise ParameterError(
+                f"thickness of {self.name}",
+                thickness,
+                "one of " + ", ".join(f"{known:g}" for known in self.thicknesses) + " mm",
+            )
 
     def designation(self, thickness: float) -> str:
         """What to order ("DIN988-4x8x0.2")."""

@@ -60,8 +60,10 @@ def read_table(path: str, lines: Iterable[str], kind: type[AnyRow]) -> dict[str,
         if None in record:
             what = "has more cells than the table has columns"
             raise DesignFileError(path, reader.line_num, "row", record[None], what)
-        values = {field: _parsed(path, reader.line_num, kind, field, suffix, record[column])
-                  for column, (field, suffix) in columns.items()}
+        values = {
+            field: _parsed(path, reader.line_num, kind, field, suffix, record[column])
+            for column, (field, suffix) in columns.items()
+        }
         row = kind(**values)
         if row.name in table:
             raise DesignFileError(path, reader.line_num, "name", row.name, "stands in the table twice")
@@ -99,5 +101,6 @@ def _check_row(path: str, line: int, row: Any) -> None:
     for chain in row.grows:
         for small, large in itertools.pairwise(chain):
             if getattr(row, small) > getattr(row, large):
-                raise DesignFileError(path, line, small, getattr(row, small),
-                                      f"must not exceed {large} = {getattr(row, large):g}")
+                raise DesignFileError(
+                    path, line, small, getattr(row, small), f"must not exceed {large} = {getattr(row, large):g}"
+                )

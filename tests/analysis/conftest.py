@@ -23,21 +23,28 @@ class OneJoint(Mechanism):
         self, joints: tuple[Joint, ...], parent: tuple[Part, ...], child: tuple[Part, ...], home: float
     ) -> None:
         self.joints = joints
-        self.bodies = (Body(name="base", kind="base", group="", parts=parent),
-                       Body(name="arm", kind="arm", group="", parts=child))
+        self.bodies = (
+            Body(name="base", kind="base", group="", parts=parent),
+            Body(name="arm", kind="arm", group="", parts=child),
+        )
         self.home = np.array([home])
         self.sections = {}
         self.task = (Coordinate(name="q", unit="deg"),)
 
     def solve_inverse(self, poses: Array, branch: str | None = None) -> InverseSolution:
         n = len(poses)
-        return InverseSolution(joints=np.tile(np.asarray(poses), (1, len(self.joints))), margins=np.ones((n, 1)),
-                               requirements=("none",), is_reachable=np.ones(n, bool))
+        return InverseSolution(
+            joints=np.tile(np.asarray(poses), (1, len(self.joints))),
+            margins=np.ones((n, 1)),
+            requirements=("none",),
+            is_reachable=np.ones(n, bool),
+        )
 
     def solve_forward(self, active: Array, near: Array | None = None) -> ForwardSolution:
         n = len(active)
-        return ForwardSolution(poses=np.asarray(active), is_solved=np.ones(n, bool), n_candidates=np.ones(n, int),
-                               residual=np.zeros(n))
+        return ForwardSolution(
+            poses=np.asarray(active), is_solved=np.ones(n, bool), n_candidates=np.ones(n, int), residual=np.zeros(n)
+        )
 
     def compute_jacobian(self, poses: Array) -> Array:
         return np.ones((len(poses), 1, 1))
@@ -63,16 +70,35 @@ class OneJoint(Mechanism):
 
 def one_joint(kind: JointKind, lower: float, upper: float, name: str = "hinge") -> Joint:
     z, origin = (0.0, 0.0, 1.0), (0.0, 0.0, 0.0)
-    return Joint(name=name, kind=kind, parent="base", child="arm", p_parent=origin, axis_parent=z, p_child=origin,
-                 axis_child=z, lower=lower, upper=upper, is_active=True)
+    return Joint(
+        name=name,
+        kind=kind,
+        parent="base",
+        child="arm",
+        p_parent=origin,
+        axis_parent=z,
+        p_child=origin,
+        axis_child=z,
+        lower=lower,
+        upper=upper,
+        is_active=True,
+    )
 
 
 @pytest.fixture(scope="session")
 def assemble() -> Callable[..., Assembly]:
     """(kind, parent parts, child parts, lower, upper, home value, deviation) -> Assembly of one joint."""
 
-    def build(kind: JointKind, parent: tuple[Part, ...], child: tuple[Part, ...], lower: float, upper: float,
-              home: float = 0.0, deviation: float = 0.02, n_joints: int = 1) -> Assembly:
+    def build(
+        kind: JointKind,
+        parent: tuple[Part, ...],
+        child: tuple[Part, ...],
+        lower: float,
+        upper: float,
+        home: float = 0.0,
+        deviation: float = 0.02,
+        n_joints: int = 1,
+    ) -> Assembly:
         joints = tuple(one_joint(kind, lower, upper, f"hinge_{i}") for i in range(n_joints))
         mechanism = OneJoint(joints, parent, child, home)
         design = Design(name="probe", mechanism=mechanism, workspace=Workspace(lower=(home,), upper=(home,)))

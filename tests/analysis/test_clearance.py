@@ -33,8 +33,12 @@ class Slide(Mechanism):
 
     def solve_inverse(self, poses, branch=None):
         margins = 100.0 - poses[:, :1]
-        return InverseSolution(joints=np.zeros((len(poses), 0)), margins=margins, requirements=("rail end",),
-                               is_reachable=(margins >= 0.0).all(axis=1))
+        return InverseSolution(
+            joints=np.zeros((len(poses), 0)),
+            margins=margins,
+            requirements=("rail end",),
+            is_reachable=(margins >= 0.0).all(axis=1),
+        )
 
     def place_bodies(self, poses):
         Ts = np.tile(np.eye(4), (len(poses), len(self.bodies), 1, 1))
@@ -69,20 +73,28 @@ def _tube(inner, outer, height):
 
 
 def _body(name, *features, runs=False, at=(0.0, 0.0, 0.0)):
-    parts = tuple(Part(name=f"part_{k}", feature=f, material=STEEL, runs_in_joint=runs, at=Placement(origin=at))
-                  for k, f in enumerate(features))
+    parts = tuple(
+        Part(name=f"part_{k}", feature=f, material=STEEL, runs_in_joint=runs, at=Placement(origin=at))
+        for k, f in enumerate(features)
+    )
     return Body(name=name, kind=name, group="", parts=parts)
 
 
 def _check(mechanism, poses, **changes):
-    design = Design(name="slide", mechanism=mechanism, workspace=Workspace(lower=(0.0, 0.0), upper=(1.0, 1.0)),
-                    **{"clearance": Clearance(minimum=0.5), **changes})
+    design = Design(
+        name="slide",
+        mechanism=mechanism,
+        workspace=Workspace(lower=(0.0, 0.0), upper=(1.0, 1.0)),
+        **{"clearance": Clearance(minimum=0.5), **changes},
+    )
     return check_clearance(build_assembly(design), np.asarray(poses, dtype=float))
 
 
 def test_two_overlapping_bars_are_found_with_the_volume_that_they_share():
-    result = _check(Slide(_body("base", _block(60, 10, 10)), _body("slide", _block(60, 10, 10))),
-                    [[90.0, 0.0], [55.0, 0.0], [40.0, 0.0], [70.0, 0.0]])
+    result = _check(
+        Slide(_body("base", _block(60, 10, 10)), _body("slide", _block(60, 10, 10))),
+        [[90.0, 0.0], [55.0, 0.0], [40.0, 0.0], [70.0, 0.0]],
+    )
     (finding,) = result.findings
     assert finding.rule == "interference"
     assert finding.severity == "error"
@@ -130,8 +142,11 @@ def test_a_gap_below_the_minimum_is_found_and_one_above_it_is_not():
 
 
 def test_facts_name_the_nearest_pairs_first_in_the_base_frame():
-    bodies = [_body("base", _block(10, 10, 10)), _body("near", _block(10, 10, 10), at=(13.0, 0.0, 0.0)),
-              _body("far", _block(10, 10, 10), at=(0.0, 40.0, 0.0))]
+    bodies = [
+        _body("base", _block(10, 10, 10)),
+        _body("near", _block(10, 10, 10), at=(13.0, 0.0, 0.0)),
+        _body("far", _block(10, 10, 10), at=(0.0, 40.0, 0.0)),
+    ]
     facts = _check(Slide(*bodies), [[5.0, 0.0], [0.0, 0.0], [9.0, 0.0]]).facts
     assert facts["minimum_clearance_pair"] == ["base", "near"]
     assert facts["minimum_clearance_mm"] == pytest.approx(3.0 - facts["mesh_allowance_mm"], rel=2e-3)
@@ -146,10 +161,21 @@ def _hinge(gap, runs=True, extra=()):
     """A pin in a bushing, turning about z; `extra` parts ride on the pin."""
     pin = Turned(profile=(Vertex(r=0, z=-30), Vertex(r=5, z=-30), Vertex(r=5, z=30), Vertex(r=0, z=30)))
     child = _body("slide", pin, runs=runs)
-    parts = child.parts + tuple(Part(name=f"extra_{k}", feature=f, material=STEEL, at=Placement(origin=at))
-                                for k, (f, at) in enumerate(extra))
-    joint = Joint(name="hinge", kind=JointKind.REVOLUTE, parent="base", child="slide", p_parent=(0, 0, 0),
-                  axis_parent=(0, 0, 1), p_child=(0, 0, 0), axis_child=(0, 0, 1), lower=-3.0, upper=3.0)
+    parts = child.parts + tuple(
+        Part(name=f"extra_{k}", feature=f, material=STEEL, at=Placement(origin=at)) for k, (f, at) in enumerate(extra)
+    )
+    joint = Joint(
+        name="hinge",
+        kind=JointKind.REVOLUTE,
+        parent="base",
+        child="slide",
+        p_parent=(0, 0, 0),
+        axis_parent=(0, 0, 1),
+        p_child=(0, 0, 0),
+        axis_child=(0, 0, 1),
+        lower=-3.0,
+        upper=3.0,
+    )
     base = _body("base", _tube(5.0 + gap, 12.0, 40.0), runs=runs)
     return Slide(base, Body(name="slide", kind="slide", group="", parts=parts), joints=(joint,))
 

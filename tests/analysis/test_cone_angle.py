@@ -42,9 +42,21 @@ RIM_LIMITED = {
     "no root at all": replace(SOCKET_16, root_diameter=8.0, shoulder_chamfer=0.0),
     "flat countersink": replace(SOCKET_16, countersink_angle=126.0 * DEG),
     "ball of 12": replace(
-        SOCKET_16, ball_diameter=12.0, root_diameter=3.0, root_fillet=0.3, rim_diameter=11.6, cover_face=3.2, land=0.6,
-        countersink_depth=0.8, cover_thickness=2.8, ring_outer=18.0, screw_circle=23.0, cover_diameter=30.0,
-        stem_diameter=7.0, stem_length=21.0),
+        SOCKET_16,
+        ball_diameter=12.0,
+        root_diameter=3.0,
+        root_fillet=0.3,
+        rim_diameter=11.6,
+        cover_face=3.2,
+        land=0.6,
+        countersink_depth=0.8,
+        cover_thickness=2.8,
+        ring_outer=18.0,
+        screw_circle=23.0,
+        cover_diameter=30.0,
+        stem_diameter=7.0,
+        stem_length=21.0,
+    ),
 }
 
 

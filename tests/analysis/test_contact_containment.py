@@ -40,10 +40,16 @@ def test_a_cavity_is_outside_and_overlapping_shells_are_inside():
     assert is_inside(double, np.zeros((1, 3)))[0]
 
 
-@pytest.mark.parametrize(("mesh", "deepest"), [
-    (trimesh.creation.annulus(4.0, 5.0, 10.0), 0.5), (trimesh.creation.box((100.0, 20.0, 1.0)), 0.5),
-    (trimesh.creation.icosphere(3, 8.0), 8.0), (trimesh.creation.cylinder(2.0, 60.0), 2.0),
-], ids=["bushing", "sheet", "ball", "pin"])
+@pytest.mark.parametrize(
+    ("mesh", "deepest"),
+    [
+        (trimesh.creation.annulus(4.0, 5.0, 10.0), 0.5),
+        (trimesh.creation.box((100.0, 20.0, 1.0)), 0.5),
+        (trimesh.creation.icosphere(3, 8.0), 8.0),
+        (trimesh.creation.cylinder(2.0, 60.0), 2.0),
+    ],
+    ids=["bushing", "sheet", "ball", "pin"],
+)
 def test_anchor_lies_at_least_half_as_deep_inside_as_possible(mesh, deepest):
     point, depth = compute_anchor(build_tree(mesh.triangles, max_edge=np.inf))
     assert trimesh.proximity.closest_point_naive(mesh, [point])[1][0] == pytest.approx(depth, abs=1e-9)

@@ -132,7 +132,8 @@ def test_warm_witness_changes_nothing_but_the_way_there(rng, bar, plate):
     nudge = T.copy()
     nudge[:3, 3] += 0.3
     assert compute_distance(a, b, nudge, warm=cold.witness).value == pytest.approx(
-        compute_distance(a, b, nudge).value, abs=1e-9)
+        compute_distance(a, b, nudge).value, abs=1e-9
+    )
 
 
 def test_parallel_plates_are_at_their_gap(bar):

@@ -21,8 +21,13 @@ def disc(
     name: str, radius: float, low: float, high: float, *, bore: float = 0.0, x: float = 0.0, runs: bool = False
 ) -> Part:
     profile = (Vertex(r=bore, z=low), Vertex(r=radius, z=low), Vertex(r=radius, z=high), Vertex(r=bore, z=high))
-    return Part(name=name, feature=Turned(profile=profile), at=Placement(origin=(x, 0.0, 0.0)), material="steel_c45",
-                runs_in_joint=runs)
+    return Part(
+        name=name,
+        feature=Turned(profile=profile),
+        at=Placement(origin=(x, 0.0, 0.0)),
+        material="steel_c45",
+        runs_in_joint=runs,
+    )
 
 
 def hinge(assemble, pin_radius: float = 3.0, bore: float = 3.01, parent: tuple[Part, ...] = (), runs: bool = True):
@@ -76,11 +81,15 @@ def test_parts_that_touch_face_to_face_do_not_overlap(assemble):
 
 def screwed(depth: float) -> tuple[Part, ...]:
     row = screw("ISO4762-M4")
-    block = Milled(slabs=(Slab(circles=((0.0, 0.0, 10.0),), low=20.0, high=40.0),),
-                   holes=(Hole(top=40.0, diameter=4.0, depth=depth, thread="M4"),))
+    block = Milled(
+        slabs=(Slab(circles=((0.0, 0.0, 10.0),), low=20.0, high=40.0),),
+        holes=(Hole(top=40.0, diameter=4.0, depth=depth, thread="M4"),),
+    )
     place = Placement(origin=(0.0, 0.0, 40.0), z=(0.0, 0.0, -1.0))
-    return (Part(name="block", feature=block, material="aluminium_6082"),
-            purchased_part("screw", screw_feature(row.name, 12.0), row, place, length=12.0))
+    return (
+        Part(name="block", feature=block, material="aluminium_6082"),
+        purchased_part("screw", screw_feature(row.name, 12.0), row, place, length=12.0),
+    )
 
 
 def test_a_screw_in_its_threaded_hole_touches_and_one_longer_than_its_hole_overlaps(assemble):

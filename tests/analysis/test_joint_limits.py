@@ -32,21 +32,27 @@ def pin(radius: float = 3.0, runs: bool = True) -> Part:
 def arm(length: float = 40.0, half_width: float = 4.0, bore: float = 6.2) -> Part:
     """A bar along x whose eye runs on the pin; its outline ends round, its edges are straight."""
     slab = Slab(circles=((0.0, 0.0, 5.0), (length, 0.0, half_width)), low=-3.0, high=3.0)
-    feature = Milled(slabs=(slab, Slab(circles=((0.0, 0.0, 6.0),), low=-3.0, high=3.0)),
-                     holes=(Hole(top=3.0, diameter=bore),))
+    feature = Milled(
+        slabs=(slab, Slab(circles=((0.0, 0.0, 6.0),), low=-3.0, high=3.0)), holes=(Hole(top=3.0, diameter=bore),)
+    )
     return Part(name="bar", feature=feature, material="aluminium_6082", runs_in_joint=True)
 
 
 def straight_arm(length: float, half_width: float) -> Part:
     slab = Slab(circles=((0.0, 0.0, half_width), (length, 0.0, half_width)), low=-3.0, high=3.0)
-    return Part(name="bar", feature=Milled(slabs=(slab,), holes=(Hole(top=3.0, diameter=6.2),)),
-                material="aluminium_6082", runs_in_joint=True)
+    return Part(
+        name="bar",
+        feature=Milled(slabs=(slab,), holes=(Hole(top=3.0, diameter=6.2),)),
+        material="aluminium_6082",
+        runs_in_joint=True,
+    )
 
 
 def hinge_with_stops(assemble, angles: tuple[float, ...], lower: float, upper: float, home: float = 0.0):
     """Posts of radius 2 at distance 30: a bar of half width 5 meets them where sin(beta) = (5 + 2) / 30."""
-    posts = tuple(post(30.0 * math.cos(a), 30.0 * math.sin(a), 2.0, -5.0, 5.0, f"post_{i}")
-                  for i, a in enumerate(angles))
+    posts = tuple(
+        post(30.0 * math.cos(a), 30.0 * math.sin(a), 2.0, -5.0, 5.0, f"post_{i}") for i, a in enumerate(angles)
+    )
     return assemble(JointKind.REVOLUTE, (pin(), *posts), (straight_arm(60.0, 5.0),), lower, upper, home)
 
 
@@ -100,11 +106,19 @@ def test_a_slide_stops_at_the_end_of_its_groove(assemble):
 
 def test_a_ball_joint_leans_until_a_wall_on_one_side_and_further_on_the_others(assemble):
     """A rod along z and a wall at x = 20: the rod's upper rim meets it when leaning towards +x, and not towards -x."""
-    rod = Part(name="rod", feature=Turned(profile=(Vertex(r=0.0, z=5.0), Vertex(r=2.0, z=5.0), Vertex(r=2.0, z=40.0),
-                                                   Vertex(r=0.0, z=40.0))), material="steel_c45")
-    wall = Part(name="wall", feature=Milled(slabs=(Slab(circles=((0.0, 20.0, 1.0), (0.0, -20.0, 1.0)), low=0.0,
-                                                        high=60.0),)),
-                at=Placement(origin=(21.0, 0.0, 0.0)), material="steel_c45")
+    rod = Part(
+        name="rod",
+        feature=Turned(
+            profile=(Vertex(r=0.0, z=5.0), Vertex(r=2.0, z=5.0), Vertex(r=2.0, z=40.0), Vertex(r=0.0, z=40.0))
+        ),
+        material="steel_c45",
+    )
+    wall = Part(
+        name="wall",
+        feature=Milled(slabs=(Slab(circles=((0.0, 20.0, 1.0), (0.0, -20.0, 1.0)), low=0.0, high=60.0),)),
+        at=Placement(origin=(21.0, 0.0, 0.0)),
+        material="steel_c45",
+    )
     assembly = assemble(JointKind.SPHERICAL, (wall,), (rod,), 0.0, 40.0 * DEG, home=5.0 * DEG)
     result = measure_joint_limits(assembly, n_azimuths=8)
     cone = result.facts["cones"]["hinge_0"]

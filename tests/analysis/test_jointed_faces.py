@@ -17,8 +17,18 @@ from linkwright.generator.assembly import AssembledBody, AssembledPart
 from linkwright.generator.solids import build_solid
 from linkwright.generator.surfaces import SurfaceKind
 
-HINGE = Joint(name="hinge", kind=JointKind.REVOLUTE, parent="a", child="b", p_parent=(0, 0, 0), axis_parent=(0, 0, 1),
-              p_child=(0, 0, 0), axis_child=(0, 0, 1), lower=-3.0, upper=3.0)
+HINGE = Joint(
+    name="hinge",
+    kind=JointKind.REVOLUTE,
+    parent="a",
+    child="b",
+    p_parent=(0, 0, 0),
+    axis_parent=(0, 0, 1),
+    p_child=(0, 0, 0),
+    axis_child=(0, 0, 1),
+    lower=-3.0,
+    upper=3.0,
+)
 
 
 def _ring(inner, outer, low, high, holes=()):
@@ -56,8 +66,10 @@ def _turns(n):
 def _scan(a, b, Ts, joint=HINGE, need=0.5):
     table = FaceTable(_Joints(joint))
     one, two = (build_contact_body(body, table.classes(body)) for body in (a, b))
-    return (scan_pair(one, two, Ts, need=need, faces=table.between(a, b, Ts)).scan,
-            scan_pair(one, two, Ts, need=need).scan)
+    return (
+        scan_pair(one, two, Ts, need=need, faces=table.between(a, b, Ts)).scan,
+        scan_pair(one, two, Ts, need=need).scan,
+    )
 
 
 def test_a_ring_is_full_about_its_axis_and_about_no_other():
@@ -73,8 +85,11 @@ def test_a_hole_takes_fullness_from_the_faces_that_it_breaks_only():
     ring = _body("a", _ring(4.0, 12.0, 0.0, 5.0, holes=(Hole(x=8.0, top=5.0, diameter=2.0, depth=2.0),)))
     surfaces = ring.parts[0].solid.surfaces
     full = full_faces(ring, HINGE, as_parent=True).tolist()
-    kept = [(s.kind, s.point[2] if s.kind is SurfaceKind.PLANE else s.radius)
-            for s, f in zip(surfaces, full, strict=True) if f]
+    kept = [
+        (s.kind, s.point[2] if s.kind is SurfaceKind.PLANE else s.radius)
+        for s, f in zip(surfaces, full, strict=True)
+        if f
+    ]
     assert sorted(kept) == [(SurfaceKind.CYLINDER, 4.0), (SurfaceKind.CYLINDER, 12.0), (SurfaceKind.PLANE, 0.0)]
 
 

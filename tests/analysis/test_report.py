@@ -11,8 +11,16 @@ import pytest
 from linkwright.analysis.findings import CheckResult, Finding, Report, Severity
 from linkwright.analysis.report import findings_json, line_of, plain
 
-FINDING = Finding(rule="r", severity=Severity.WARNING, subject=("a", "b"), message="m", measured=np.float64(0.5),
-                  pose={"x_mm": np.float64(1.0)}, location=(1.0, 2.0, 3.0), key="clearance.minimum_mm")
+FINDING = Finding(
+    rule="r",
+    severity=Severity.WARNING,
+    subject=("a", "b"),
+    message="m",
+    measured=np.float64(0.5),
+    pose={"x_mm": np.float64(1.0)},
+    location=(1.0, 2.0, 3.0),
+    key="clearance.minimum_mm",
+)
 
 
 def report_of(**facts):

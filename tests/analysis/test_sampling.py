@@ -45,10 +45,16 @@ def test_a_coordinate_whose_bounds_agree_stays_there():
     assert (poses[:, 1] == 0.3).all()
 
 
-@pytest.mark.parametrize(("lower", "upper", "n", "message"), [
-    ([0.0], [1.0], 0, "0 poses"), ([0.0, 2.0], [1.0, 1.0], 5, "coordinate 1"), ([], [], 5, "shapes"),
-    ([0.0], [np.nan], 5, "empty"), ([0.0, 0.0], [1.0], 5, "shapes"),
-])
+@pytest.mark.parametrize(
+    ("lower", "upper", "n", "message"),
+    [
+        ([0.0], [1.0], 0, "0 poses"),
+        ([0.0, 2.0], [1.0, 1.0], 5, "coordinate 1"),
+        ([], [], 5, "shapes"),
+        ([0.0], [np.nan], 5, "empty"),
+        ([0.0, 0.0], [1.0], 5, "shapes"),
+    ],
+)
 def test_a_sample_of_nothing_is_refused(lower, upper, n, message):
     with pytest.raises(VacuousCheckError, match=message):
         sample_box(np.array(lower), np.array(upper), n, 1)

@@ -14,19 +14,29 @@ from linkwright.analysis.findings import CheckResult, Finding, Report, Severity
 from linkwright.designs.language.errors import ReleaseError, VacuousCheckError
 
 ERROR = Finding(
-    rule="clearance", severity=Severity.ERROR, subject=("upper", "fore"), message="the [bars] touch",
-    pose={"x_mm": 80.0, "y_mm": 70.0}, measured=0.123456789, limit=0.5, unit="mm", location=(1.0, 2.0, 3.0),
-    key="parameters.fore_mm", suggestion="make the fore bar shorter",
+    rule="clearance",
+    severity=Severity.ERROR,
+    subject=("upper", "fore"),
+    message="the [bars] touch",
+    pose={"x_mm": 80.0, "y_mm": 70.0},
+    measured=0.123456789,
+    limit=0.5,
+    unit="mm",
+    location=(1.0, 2.0, 3.0),
+    key="parameters.fore_mm",
+    suggestion="make the fore bar shorter",
 )
 WARNING = Finding(rule="fit", severity=Severity.WARNING, subject=("base",), message="loose", key="clearance.minimum_mm")
 
 
 def report_of(*findings):
     facts = {"minimum_mm": np.float64(0.25), "joints": [{"joint": "elbow", "measured_deg": 12.5}], "by_pair": {"a": 1}}
-    return Report(results=(
-        CheckResult(check="clearance", looked_at={"poses": 1000, "pairs": 406}, findings=findings, facts=facts),
-        CheckResult(check="fits", looked_at={"joints": 3}),
-    ))
+    return Report(
+        results=(
+            CheckResult(check="clearance", looked_at={"poses": 1000, "pairs": 406}, findings=findings, facts=facts),
+            CheckResult(check="fits", looked_at={"joints": 3}),
+        )
+    )
 
 
 @pytest.fixture
@@ -50,8 +60,11 @@ def house(monkeypatch):
         seen.released = {"out": out, "strict": strict}
         written = seen.report.passes(strict=strict)
         paths = ["cad/assembly.step", "design.toml", *(f"mesh/part_{i}.stl" for i in range(9))]
-        table = {"files": [SimpleNamespace(path=path) for path in paths], "mass_kg": 2.5,
-                 "parts": [SimpleNamespace(count=3, purchased=""), SimpleNamespace(count=4, purchased="688ZZ")]}
+        table = {
+            "files": [SimpleNamespace(path=path) for path in paths],
+            "mass_kg": 2.5,
+            "parts": [SimpleNamespace(count=3, purchased=""), SimpleNamespace(count=4, purchased="688ZZ")],
+        }
         manifest = SimpleNamespace(**table, model_dump=lambda mode: {"mass_kg": 2.5})
         return SimpleNamespace(path=out, report=seen.report, manifest=manifest if written else None, written=written)
 
@@ -67,9 +80,16 @@ def house(monkeypatch):
     return seen
 
 
-@pytest.mark.parametrize(("findings", "flags", "code"), [
-    ((), [], 0), ((), ["--strict"], 0), ((WARNING,), [], 0), ((WARNING,), ["--strict"], 1), ((ERROR,), [], 1),
-])
+@pytest.mark.parametrize(
+    ("findings", "flags", "code"),
+    [
+        ((), [], 0),
+        ((), ["--strict"], 0),
+        ((WARNING,), [], 0),
+        ((WARNING,), ["--strict"], 1),
+        ((ERROR,), [], 1),
+    ],
+)
 @pytest.mark.parametrize("words", [["check", "arm"], ["release", "arm", "-o", "out"]])
 def test_exit_code_follows_the_findings(linkwright, house, words, findings, flags, code):
     house.report = report_of(*findings)
@@ -83,16 +103,36 @@ def test_check_tells_a_finding_with_its_numbers_pose_line_and_cure(linkwright, h
     (tmp_path / "d.toml").write_text('mechanism = "arm"\n\n[parameters]\nfore_mm = 90\n')
     house.report = report_of(ERROR, WARNING)
     text = linkwright("check", "d.toml").stdout
-    for words in ("error [clearance] upper / fore", "the [bars] touch", "measured 0.123457 mm, limit 0.5 mm",
-                  "x_mm = 80, y_mm = 70", "1, 2, 3 mm", "parameters.fore_mm (d.toml:4)", "make the fore bar shorter",
-                  "1000 poses, 406 pairs", "minimum_mm: 0.25", "elbow", "12.5", "FAIL", "1 error, 1 warning, 0 notes"):
+    for words in (
+        "error [clearance] upper / fore",
+        "the [bars] touch",
+        "measured 0.123457 mm, limit 0.5 mm",
+        "x_mm = 80, y_mm = 70",
+        "1, 2, 3 mm",
+        "parameters.fore_mm (d.toml:4)",
+        "make the fore bar shorter",
+        "1000 poses, 406 pairs",
+        "minimum_mm: 0.25",
+        "elbow",
+        "12.5",
+        "FAIL",
+        "1 error, 1 warning, 0 notes",
+    ):
         assert words in text
     assert text.index("error [clearance]") < text.index("warning [fit]")
 
 
 def test_joint_limits_are_told_in_degrees_beside_the_declared_ones(linkwright, house):
-    row = {"lower": -1.0, "upper": 2.0, "declared_lower": -0.5, "declared_upper": 1.5, "unit": "rad",
-           "unlimited": False, "stopped_below_by": "", "stopped_above_by": "base/lug - fore/eye"}
+    row = {
+        "lower": -1.0,
+        "upper": 2.0,
+        "declared_lower": -0.5,
+        "declared_upper": 1.5,
+        "unit": "rad",
+        "unlimited": False,
+        "stopped_below_by": "",
+        "stopped_above_by": "base/lug - fore/eye",
+    }
     slide = {**row, "unit": "mm", "unlimited": True}
     facts = {"limits": {"elbow": row, "slide": slide}, "azimuths": [float(i) for i in range(36)]}
     house.report = Report(results=(CheckResult(check="joint-limits", looked_at={"joints": 2}, facts=facts),))
@@ -135,8 +175,16 @@ def test_an_error_of_the_upper_storeys_is_one_line_and_code_two(linkwright, hous
 def test_release_shows_what_was_written_and_what_for(linkwright, house):
     text = linkwright("release", "arm", "-o", "out", "--strict").stdout
     assert house.released == {"out": Path("out"), "strict": True}
-    for words in ("PASS", "assembly.step  the whole device", "9 files .stl", "manifest.json", "12 files",
-                  "3 parts to make", "4 to buy", "2.5 kg"):
+    for words in (
+        "PASS",
+        "assembly.step  the whole device",
+        "9 files .stl",
+        "manifest.json",
+        "12 files",
+        "3 parts to make",
+        "4 to buy",
+        "2.5 kg",
+    ):
         assert words in text
     assert "part_3" not in text
 

@@ -14,14 +14,17 @@ from linkwright.app.cli import COMMANDS
 from linkwright.designs import catalogue
 from linkwright.designs.language.supplies import names
 
-HEAVY = ("OCP", "build123d", "cadquery", "numba", "trimesh", "vtk", "manifold3d", "scipy", "rich",
-         "pydantic")
+HEAVY = ("OCP", "build123d", "cadquery", "numba", "trimesh", "vtk", "manifold3d", "scipy", "rich", "pydantic")
 
 
 def run_fresh(code, *words):
     """A new interpreter without anything on its input."""
     return subprocess.run(
-        [sys.executable, "-c", code, *words], capture_output=True, text=True, stdin=subprocess.DEVNULL, check=False,
+        [sys.executable, "-c", code, *words],
+        capture_output=True,
+        text=True,
+        stdin=subprocess.DEVNULL,
+        check=False,
         env={**os.environ, "COLUMNS": "120"},
     )
 
@@ -45,8 +48,10 @@ def test_version_is_told(linkwright):
 
 @pytest.mark.parametrize("name", catalogue.names())
 def test_ik_of_the_home_pose_loads_no_heavy_library(name):
-    code = (f"import sys, json\nfrom linkwright.app.cli import cli\ntry:\n    cli(['ik', '{name}'])\n"
-            f"except SystemExit as end:\n    print(json.dumps([end.code, [m for m in {HEAVY} if m in sys.modules]]))")
+    code = (
+        f"import sys, json\nfrom linkwright.app.cli import cli\ntry:\n    cli(['ik', '{name}'])\n"
+        f"except SystemExit as end:\n    print(json.dumps([end.code, [m for m in {HEAVY} if m in sys.modules]]))"
+    )
     lines = run_fresh(code).stdout.splitlines()
     assert json.loads(lines[-1]) == [0, []]
     assert len(lines) == 3
@@ -74,15 +79,18 @@ def test_a_fault_of_ours_ends_with_2_and_hides_its_traceback_until_asked(linkwri
     assert "Traceback" in linkwright("show", "arm", "--debug").stderr
 
 
-@pytest.mark.parametrize(("words", "told"), [
-    (["show", "devise.toml"], "devise.toml: file: does not exist"),
-    (["show", "amr"], "did you mean arm?"),
-    (["show", "arm", "--set", "parameters.fore_mm=-5"], "--set: parameters.fore_mm = -5: must be above 0 mm"),
-    (["show", "arm", "--set", "parameters.for_mm=5"], "did you mean parameters.fore_mm?"),
-    (["show", "arm", "--set", "nonsense"], "must be key=value"),
-    (["new", "robot"], "there is no mechanism called 'robot'"),
-    (["schema", "robot"], "there is no mechanism called 'robot'"),
-])
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["show", "devise.toml"], "devise.toml: file: does not exist"),
+        (["show", "amr"], "did you mean arm?"),
+        (["show", "arm", "--set", "parameters.fore_mm=-5"], "--set: parameters.fore_mm = -5: must be above 0 mm"),
+        (["show", "arm", "--set", "parameters.for_mm=5"], "did you mean parameters.fore_mm?"),
+        (["show", "arm", "--set", "nonsense"], "must be key=value"),
+        (["new", "robot"], "there is no mechanism called 'robot'"),
+        (["schema", "robot"], "there is no mechanism called 'robot'"),
+    ],
+)
 def test_a_wrong_design_is_one_line_and_code_two(linkwright, words, told):
     result = linkwright(*words)
     assert (result.exit_code, result.stdout) == (2, "")
@@ -99,14 +107,23 @@ def test_several_errors_are_a_line_each_and_a_list_in_json(linkwright, tmp_path)
     assert [line.split(": ")[1] for line in result.stderr.splitlines()] == ["bad.toml:3", "bad.toml:4"]
     errors = json.loads(linkwright("show", "bad.toml", "--json").stdout)["error"]["errors"]
     assert [(e["line"], e["key"], e["value"]) for e in errors] == [
-        (3, "parameters.fore_mm", -1), (4, "parameters.upper_mm", "nan"),
+        (3, "parameters.fore_mm", -1),
+        (4, "parameters.upper_mm", "nan"),
     ]
 
 
-@pytest.mark.parametrize("words", [
-    ["explode"], ["show"], ["show", "arm", "--no-such"], ["ik", "arm", "--format", "xml"],
-    ["check", "arm", "--poses", "0"], ["check", "arm", "--seed", "-1"], ["release", "arm"],
-])
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["explode"],
+        ["show"],
+        ["show", "arm", "--no-such"],
+        ["ik", "arm", "--format", "xml"],
+        ["check", "arm", "--poses", "0"],
+        ["check", "arm", "--seed", "-1"],
+        ["release", "arm"],
+    ],
+)
 def test_wrong_usage_ends_with_code_two(linkwright, words):
     result = linkwright(*words)
     assert (result.exit_code, result.stdout) == (2, "")
@@ -157,8 +174,10 @@ def test_show_tells_parameters_derived_numbers_joints_and_hash(linkwright):
 
 def test_show_toml_is_the_resolved_design(linkwright, tmp_path):
     (tmp_path / "r.toml").write_text(linkwright("show", "arm", "--toml", "--set", "parameters.fore_mm=90").stdout)
-    hashes = {json.loads(linkwright("show", *words, "--json").stdout)["design_hash"]
-              for words in (["r.toml"], ["arm", "--set", "parameters.fore_mm=90"])}
+    hashes = {
+        json.loads(linkwright("show", *words, "--json").stdout)["design_hash"]
+        for words in (["r.toml"], ["arm", "--set", "parameters.fore_mm=90"])
+    }
     assert len(hashes) == 1
 
 

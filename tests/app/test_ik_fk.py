@@ -52,7 +52,10 @@ def test_fk_keeps_a_row_without_values_and_its_reason(linkwright):
 def test_ik_reads_what_fk_writes(linkwright):
     there = linkwright("fk", "arm", text=linkwright("ik", "arm", text=POSES).stdout).stdout
     assert [row["reachable"] for row in rows_of(linkwright("ik", "arm", text=there).stdout)] == [
-        "true", "true", "false", "true",
+        "true",
+        "true",
+        "false",
+        "true",
     ]
 
 
@@ -100,22 +103,25 @@ def test_fk_refuses_an_ambiguous_row_until_a_near_pose_decides(linkwright):
     assert linkwright("fk", "arm", "--joints", "10,-120", "--near", "80,70").exit_code == 0
 
 
-@pytest.mark.parametrize(("text", "words"), [
-    ("x_mm,y_cm\n1,2\n", ["stdin:2", "no column called 'y_cm'", "did you mean y_mm?"]),
-    ("x_mm\n1\n", ["column y_mm is missing"]),
-    ("x_mm,y_mm,x_mm\n1,2,3\n", ["'x_mm' is named twice"]),
-    ("x_mm,y_mm\n1\n", ["stdin:2", "1 cells where the header names 2"]),
-    ("x_mm,y_mm\n1,two\n", ["stdin:2", "column y_mm = 'two'", "finite number"]),
-    ("x_mm,y_mm\n1,nan\n", ["column y_mm = 'nan'"]),
-    ("x_mm,y_mm\n1,1_0\n", ["column y_mm = '1_0'"]),
-    ("x_mm,y_mm\n80,70\n1,\n", ["stdin:3", "column y_mm is empty"]),
-    ("80,70\n", ["the first line must name the columns"]),
-    ("x_mm,y_mm\n", ["the input is empty"]),
-    ("", ["the input is empty"]),
-    ('{"x_mm": 80, "y_mm": true}\n', ["column y_mm = True"]),
-    ('{"x_mm": 80}\n', ["column y_mm is missing"]),
-    ('{"x_mm": 80, "y_mm": 70}\n{"x_mm": 80,\n', ["stdin:2", "not a JSON object"]),
-])
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("x_mm,y_cm\n1,2\n", ["stdin:2", "no column called 'y_cm'", "did you mean y_mm?"]),
+        ("x_mm\n1\n", ["column y_mm is missing"]),
+        ("x_mm,y_mm,x_mm\n1,2,3\n", ["'x_mm' is named twice"]),
+        ("x_mm,y_mm\n1\n", ["stdin:2", "1 cells where the header names 2"]),
+        ("x_mm,y_mm\n1,two\n", ["stdin:2", "column y_mm = 'two'", "finite number"]),
+        ("x_mm,y_mm\n1,nan\n", ["column y_mm = 'nan'"]),
+        ("x_mm,y_mm\n1,1_0\n", ["column y_mm = '1_0'"]),
+        ("x_mm,y_mm\n80,70\n1,\n", ["stdin:3", "column y_mm is empty"]),
+        ("80,70\n", ["the first line must name the columns"]),
+        ("x_mm,y_mm\n", ["the input is empty"]),
+        ("", ["the input is empty"]),
+        ('{"x_mm": 80, "y_mm": true}\n', ["column y_mm = True"]),
+        ('{"x_mm": 80}\n', ["column y_mm is missing"]),
+        ('{"x_mm": 80, "y_mm": 70}\n{"x_mm": 80,\n', ["stdin:2", "not a JSON object"]),
+    ],
+)
 def test_wrong_rows_are_refused_with_line_and_column(linkwright, text, words):
     result = linkwright("ik", "arm", text=text)
     assert result.exit_code == 2
@@ -124,12 +130,18 @@ def test_wrong_rows_are_refused_with_line_and_column(linkwright, text, words):
     assert len(result.stderr.splitlines()) == 1
 
 
-@pytest.mark.parametrize("words", [
-    ["ik", "arm", "--pose", "80"], ["ik", "arm", "--pose", "80,x"], ["fk", "arm", "--joints", "1,2,3"],
-    ["fk", "arm", "--joints", "1,2", "--near", "1"], ["ik", "arm", "-i", "missing.csv"],
-    ["ik", "arm", "--pose", "80,70", "--branch", "sideways"],
-    ["ik", "arm", "--pose", "80,70", "-o", "no/such/folder.csv"],
-])
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["ik", "arm", "--pose", "80"],
+        ["ik", "arm", "--pose", "80,x"],
+        ["fk", "arm", "--joints", "1,2,3"],
+        ["fk", "arm", "--joints", "1,2", "--near", "1"],
+        ["ik", "arm", "-i", "missing.csv"],
+        ["ik", "arm", "--pose", "80,70", "--branch", "sideways"],
+        ["ik", "arm", "--pose", "80,70", "-o", "no/such/folder.csv"],
+    ],
+)
 def test_wrong_options_end_with_code_two_and_one_line(linkwright, words):
     result = linkwright(*words)
     assert result.exit_code == 2

@@ -27,8 +27,13 @@ class ArmParameters:
     """The two bars of the arm."""
 
     upper: float = length(100.0, "shoulder to elbow", symbol="l_1")
-    fore: float = length(80.0, "elbow to hand; a text that is long enough to need a second line of comment beside its "
-                         "value, because it explains at length why eighty is right", symbol="l_2", most=500.0)
+    fore: float = length(
+        80.0,
+        "elbow to hand; a text that is long enough to need a second line of comment beside its "
+        "value, because it explains at length why eighty is right",
+        symbol="l_2",
+        most=500.0,
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,8 +76,19 @@ class Arm(Mechanism):
         origin, z = (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)
         names = (("shoulder", "base", "upper"), ("elbow", "upper", "fore"), ("wrist", "fore", "hand"))
         self.joints = tuple(
-            Joint(name=name, kind=JointKind.REVOLUTE, parent=parent, child=child, p_parent=origin, axis_parent=z,
-                  p_child=origin, axis_child=z, lower=-math.pi, upper=math.pi, is_active=name != "wrist")
+            Joint(
+                name=name,
+                kind=JointKind.REVOLUTE,
+                parent=parent,
+                child=child,
+                p_parent=origin,
+                axis_parent=z,
+                p_child=origin,
+                axis_child=z,
+                lower=-math.pi,
+                upper=math.pi,
+                is_active=name != "wrist",
+            )
             for name, parent, child in names
         )
         bodies = ("base", "upper", "fore", "hand")
@@ -91,8 +107,10 @@ class Arm(Mechanism):
         shoulder = np.arctan2(poses[:, 1], poses[:, 0]) - bend
         margins = np.stack([p.upper + p.fore - d, d - abs(p.upper - p.fore)], axis=-1)
         return InverseSolution(
-            joints=np.stack([shoulder, elbow, -shoulder - elbow], axis=-1), margins=margins,
-            requirements=("stretched", "folded"), is_reachable=np.all(margins >= 0.0, axis=-1),
+            joints=np.stack([shoulder, elbow, -shoulder - elbow], axis=-1),
+            margins=margins,
+            requirements=("stretched", "folded"),
+            is_reachable=np.all(margins >= 0.0, axis=-1),
         )
 
     def solve_forward(self, active: np.ndarray, near: np.ndarray | None = None) -> ForwardSolution:

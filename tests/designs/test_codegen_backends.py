@@ -80,6 +80,12 @@ def run_js(program, poses, folder):
 
 
 @pytest.fixture
+def each_mechanism(each_design):
+    """The mechanism of the same design: two fixtures with parameters of their own would mix them."""
+    return each_design.mechanism
+
+
+@pytest.fixture
 def table(each_design, rng):
     return cases(each_design.mechanism, each_design.box(), rng)
 

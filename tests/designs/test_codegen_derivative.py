@@ -12,6 +12,12 @@ from linkwright.designs.language import vocabulary as v
 
 
 @pytest.fixture
+def each_mechanism(each_design):
+    """The mechanism of the same design: two fixtures with parameters of their own would mix them."""
+    return each_design.mechanism
+
+
+@pytest.fixture
 def poses(each_design, feasible_poses, rng):
     mechanism = each_design.mechanism
     lower, upper = each_design.box()

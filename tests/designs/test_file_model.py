@@ -12,13 +12,28 @@ from linkwright.designs.file.reader import read_design
 from linkwright.designs.file.writer import example_of
 from linkwright.designs.language.errors import DesignFileError
 
-RIGHT = ['[parameters]\nfore_mm = 90', '[supplies]\nbearing = "623"', "[parts.bars]\ntilt_deg = -90",
-         '[[allowed]]\npair = ["base", "fore"]\nreason = "x"', "[workspace]\nx_min_mm = 1"]
-WRONG = ["[parameters]\nfore_mm = -1", "[parameters]\nfore_mm = 501", "[parameters]\nq = 1",
-         '[parameters]\nfore_mm = "9"',
-         '[supplies]\nbearing = "1"', "[parts.bars]\nn_screws = 0", "[parts.bars]\nn_screws = 1.5", "[parts.x]\nq = 1",
-         '[[allowed]]\npair = ["base"]\nreason = "x"', '[[allowed]]\npair = ["base", "fore"]', 'name = "a b"',
-         "[parts.bars]\nis_hollow = 1", "[parts.bars]\ntilt_deg = 91"]
+RIGHT = [
+    "[parameters]\nfore_mm = 90",
+    '[supplies]\nbearing = "623"',
+    "[parts.bars]\ntilt_deg = -90",
+    '[[allowed]]\npair = ["base", "fore"]\nreason = "x"',
+    "[workspace]\nx_min_mm = 1",
+]
+WRONG = [
+    "[parameters]\nfore_mm = -1",
+    "[parameters]\nfore_mm = 501",
+    "[parameters]\nq = 1",
+    '[parameters]\nfore_mm = "9"',
+    '[supplies]\nbearing = "1"',
+    "[parts.bars]\nn_screws = 0",
+    "[parts.bars]\nn_screws = 1.5",
+    "[parts.x]\nq = 1",
+    '[[allowed]]\npair = ["base"]\nreason = "x"',
+    '[[allowed]]\npair = ["base", "fore"]',
+    'name = "a b"',
+    "[parts.bars]\nis_hollow = 1",
+    "[parts.bars]\ntilt_deg = 91",
+]
 
 
 @pytest.fixture(params=["own", "combined"])

@@ -6,7 +6,7 @@ import pytest
 
 from linkwright.designs.file.positions import lines_of, words_of
 
-TEXT = '''# comment
+TEXT = """# comment
 a = 1
 "b c" = 2
 d.e = 3
@@ -24,17 +24,28 @@ k = 1
 k = 2
 [rows.deep]
 m = 1
-'''
+"""
 
 
 def test_lines_of_every_form_of_key():
     lines = lines_of(TEXT)
     assert {k: lines[k] for k in ("a", "b c", "d", "d.e", "t", "t.x", "t.x.1")} == {
-        "a": 2, "b c": 3, "d": 4, "d.e": 4, "t": 6, "t.x": 7, "t.x.1": 9,
+        "a": 2,
+        "b c": 3,
+        "d": 4,
+        "d.e": 4,
+        "t": 6,
+        "t.x": 7,
+        "t.x.1": 9,
     }
     assert (lines["t.u.v.w"], lines["t.u.v.w.y"], lines["t.u.v.w.y.q.r"]) == (11, 12, 12)
     assert [lines[k] for k in ("rows.0", "rows.0.k", "rows.1", "rows.1.k", "rows.1.deep", "rows.1.deep.m")] == [
-        13, 14, 15, 16, 17, 18,
+        13,
+        14,
+        15,
+        16,
+        17,
+        18,
     ]
 
 

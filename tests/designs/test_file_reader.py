@@ -58,25 +58,30 @@ def test_reader_keeps_the_exact_inside_value_of_a_default(read):
 
 
 def test_whole_numbers_and_floats_of_one_value_give_one_hash(read):
-    texts = [f'mechanism = "arm"\n[parameters]\nfore_mm = {value}\n[workspace]\nx_min_mm = {zero}'
-             for value, zero in (("90", "0"), ("90.0", "-0.0"), ("9e1", "+0"))]
+    texts = [
+        f'mechanism = "arm"\n[parameters]\nfore_mm = {value}\n[workspace]\nx_min_mm = {zero}'
+        for value, zero in (("90", "0"), ("90.0", "-0.0"), ("9e1", "+0"))
+    ]
     assert len({read(text).hash for text in texts}) == 1
 
 
-@pytest.mark.parametrize(("line", "key", "allowed"), [
-    ("fore_mm = -5", "parameters.fore_mm", "above 0 mm"),
-    ("fore_mm = 0", "parameters.fore_mm", "above 0 mm"),
-    ("fore_mm = 501", "parameters.fore_mm", "at most 500 mm"),
-    ('fore_mm = "90"', "parameters.fore_mm", "must be a number, not text"),
-    ("fore_mm = true", "parameters.fore_mm", "must be a number, not true or false"),
-    ("fore_mm = nan", "parameters.fore_mm", "finite"),
-    ("fore_mm = inf", "parameters.fore_mm", "must be"),
-    ("fore_mm = [90]", "parameters.fore_mm", "must be a number, not a list"),
-    ("fore_m = 90", "parameters.fore_m", "did you mean parameters.fore_mm?"),
-    ("fore = 90", "parameters.fore", "did you mean parameters.fore_mm?"),
-    ("tilt_deg = 9", "parameters.tilt_deg", "did you mean parts.bars.tilt_deg?"),
-    ("qqqqq = 9", "parameters.qqqqq", "no such key; known: upper_mm, fore_mm"),
-])
+@pytest.mark.parametrize(
+    ("line", "key", "allowed"),
+    [
+        ("fore_mm = -5", "parameters.fore_mm", "above 0 mm"),
+        ("fore_mm = 0", "parameters.fore_mm", "above 0 mm"),
+        ("fore_mm = 501", "parameters.fore_mm", "at most 500 mm"),
+        ('fore_mm = "90"', "parameters.fore_mm", "must be a number, not text"),
+        ("fore_mm = true", "parameters.fore_mm", "must be a number, not true or false"),
+        ("fore_mm = nan", "parameters.fore_mm", "finite"),
+        ("fore_mm = inf", "parameters.fore_mm", "must be"),
+        ("fore_mm = [90]", "parameters.fore_mm", "must be a number, not a list"),
+        ("fore_m = 90", "parameters.fore_m", "did you mean parameters.fore_mm?"),
+        ("fore = 90", "parameters.fore", "did you mean parameters.fore_mm?"),
+        ("tilt_deg = 9", "parameters.tilt_deg", "did you mean parts.bars.tilt_deg?"),
+        ("qqqqq = 9", "parameters.qqqqq", "no such key; known: upper_mm, fore_mm"),
+    ],
+)
 def test_a_wrong_line_is_named_with_its_line_key_and_what_is_allowed(read, line, key, allowed):
     error = refused(read, f'mechanism = "arm"\n\n[parameters]\nupper_mm = 100\n{line}\n')
     assert (error.line, error.key) == (5, key)
@@ -84,29 +89,32 @@ def test_a_wrong_line_is_named_with_its_line_key_and_what_is_allowed(read, line,
     assert key in str(error)
 
 
-@pytest.mark.parametrize(("text", "line", "words"), [
-    ("[parts.bars]\nn_screws = 2.0", 3, "must be a whole number"),
-    ("[parts.bars]\nn_screws = true", 3, "must be a whole number, not true or false"),
-    ("[parts.bars]\nn_screws = 13", 3, "at least 1 and at most 12"),
-    ("[parts.bars]\nis_hollow = 1", 3, "must be true or false"),
-    ("[parts.bars]\ntilt_deg = 91", 3, "at least -90 deg and at most 90 deg"),
-    ('[supplies]\nbearing = "688"', 3, "did you mean 688ZZ?"),
-    ("[supplies]\nbearing = 623", 3, "one of 623"),
-    ("[paramters]\nfore_mm = 90", 2, "did you mean parameters?"),
-    ("[parts.bar]\nq = 1", 2, "did you mean parts.bars?"),
-    ("parts = 3", 2, "must be a table"),
-    ('name = "a/b"', 2, "can name a file"),
-    ('name = "../up"', 2, "can name a file"),
-    ("[sampling]\nn_poses = 0", 3, "at least 1"),
-    ("[workspace]\nx_min_mm = 95", 3, "must be at most x_max_mm = 90"),
-    ("[workspace]\nx_max_mm = 10", 3, "must be at least x_min_mm = 60"),
-    ('[[allowed]]\npair = ["base"]\nreason = "x"', 3, "exactly two bodies"),
-    ('[[allowed]]\npair = ["base", "uper"]\nreason = "x"', 3, "did you mean upper?"),
-    ('[[allowed]]\npair = ["base", "base"]\nreason = "x"', 3, "two different bodies"),
-    ('[[allowed]]\npair = ["base", "fore"]\nreason = ""', 4, "must say why"),
-    ('[[allowed]]\npair = ["base", "fore"]', 2, "is required"),
-    ('allowed = "none"', 2, "[[allowed]] tables"),
-])
+@pytest.mark.parametrize(
+    ("text", "line", "words"),
+    [
+        ("[parts.bars]\nn_screws = 2.0", 3, "must be a whole number"),
+        ("[parts.bars]\nn_screws = true", 3, "must be a whole number, not true or false"),
+        ("[parts.bars]\nn_screws = 13", 3, "at least 1 and at most 12"),
+        ("[parts.bars]\nis_hollow = 1", 3, "must be true or false"),
+        ("[parts.bars]\ntilt_deg = 91", 3, "at least -90 deg and at most 90 deg"),
+        ('[supplies]\nbearing = "688"', 3, "did you mean 688ZZ?"),
+        ("[supplies]\nbearing = 623", 3, "one of 623"),
+        ("[paramters]\nfore_mm = 90", 2, "did you mean parameters?"),
+        ("[parts.bar]\nq = 1", 2, "did you mean parts.bars?"),
+        ("parts = 3", 2, "must be a table"),
+        ('name = "a/b"', 2, "can name a file"),
+        ('name = "../up"', 2, "can name a file"),
+        ("[sampling]\nn_poses = 0", 3, "at least 1"),
+        ("[workspace]\nx_min_mm = 95", 3, "must be at most x_max_mm = 90"),
+        ("[workspace]\nx_max_mm = 10", 3, "must be at least x_min_mm = 60"),
+        ('[[allowed]]\npair = ["base"]\nreason = "x"', 3, "exactly two bodies"),
+        ('[[allowed]]\npair = ["base", "uper"]\nreason = "x"', 3, "did you mean upper?"),
+        ('[[allowed]]\npair = ["base", "base"]\nreason = "x"', 3, "two different bodies"),
+        ('[[allowed]]\npair = ["base", "fore"]\nreason = ""', 4, "must say why"),
+        ('[[allowed]]\npair = ["base", "fore"]', 2, "is required"),
+        ('allowed = "none"', 2, "[[allowed]] tables"),
+    ],
+)
 def test_every_kind_of_mistake_is_placed(read, text, line, words):
     error = refused(read, f'mechanism = "arm"\n{text}\n')
     assert error.line == line
@@ -126,21 +134,29 @@ def test_a_rule_of_the_mechanism_that_spans_two_keys_is_placed_too(read):
     assert "must differ from upper_mm" in error.allowed
 
 
-@pytest.mark.parametrize(("text", "line", "words"), [
-    ('mechanism = "arm"\n[parameters\n', 2, "not TOML in `[parameters`"),
-    ('mechanism = "arm"\n[parameters]\nfore_mm = 1\nfore_mm = 2\n', 4, "overwrite"),
-    ('mechanism = "arm"\n[parameters]\nfore_mm = 1,5\n', 3, "not TOML"),
-    ('mechanism = "arm"\n[parameters]\nfore_mm =', 3, "not TOML"),
-])
+@pytest.mark.parametrize(
+    ("text", "line", "words"),
+    [
+        ('mechanism = "arm"\n[parameters\n', 2, "not TOML in `[parameters`"),
+        ('mechanism = "arm"\n[parameters]\nfore_mm = 1\nfore_mm = 2\n', 4, "overwrite"),
+        ('mechanism = "arm"\n[parameters]\nfore_mm = 1,5\n', 3, "not TOML"),
+        ('mechanism = "arm"\n[parameters]\nfore_mm =', 3, "not TOML"),
+    ],
+)
 def test_a_text_that_is_no_toml_is_refused_with_the_line(read, text, line, words):
     error = refused(read, text)
     assert abs(error.line - line) <= (1 if "overwrite" in words else 0)
     assert words in str(error)
 
 
-@pytest.mark.parametrize(("text", "words"), [
-    ('name = "x"', "is required"), ('mechanism = "amr"', "did you mean arm?"), ("mechanism = 3", "text in quotes"),
-])
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ('name = "x"', "is required"),
+        ('mechanism = "amr"', "did you mean arm?"),
+        ("mechanism = 3", "text in quotes"),
+    ],
+)
 def test_a_file_without_a_known_mechanism_is_refused(read, text, words):
     error = refused(read, text)
     assert error.key == "mechanism"
@@ -149,27 +165,39 @@ def test_a_file_without_a_known_mechanism_is_refused(read, text, words):
 
 def test_overrides_hold_over_the_file_and_the_last_one_over_the_first(read):
     text = 'mechanism = "arm"\n[parameters]\nfore_mm = 90\n'
-    design = read(text, ["parameters.fore_mm=91", "parameters.fore_mm = 92", "name=7", "supplies.bearing=623",
-                         "parts.bars.is_hollow=true", "sampling.n_poses=3"])
+    design = read(
+        text,
+        [
+            "parameters.fore_mm=91",
+            "parameters.fore_mm = 92",
+            "name=7",
+            "supplies.bearing=623",
+            "parts.bars.is_hollow=true",
+            "sampling.n_poses=3",
+        ],
+    )
     assert design.mechanism.sections["parameters"].fore == 92.0
     assert (design.name, design.mechanism.sections["supplies"].bearing) == ("7", "623")
     assert design.mechanism.sections["parts.bars"].is_hollow is True
     assert design.sampling.n_poses == 3
 
 
-@pytest.mark.parametrize(("override", "words"), [
-    ("parameters.fore_mm=-1", "above 0 mm"),
-    ("parameters.fore_mm=x", "must be a number, not text"),
-    ("parameters.fore_mm=1\nname='x'", "must be a number, not text"),
-    ("parameters.fore_mm=100", "must differ from upper_mm"),
-    ("fore_mm=90", "did you mean parameters.fore_mm?"),
-    ("nothing.here=90", "no such table"),
-    ("novalue", "must be key=value"),
-    ("=3", "must be key=value"),
-    ("name.x=3", "can name a file"),
-    ("supplies.bearing=69", "one of 623"),
-    ("mechanism=robot", "one of arm"),
-])
+@pytest.mark.parametrize(
+    ("override", "words"),
+    [
+        ("parameters.fore_mm=-1", "above 0 mm"),
+        ("parameters.fore_mm=x", "must be a number, not text"),
+        ("parameters.fore_mm=1\nname='x'", "must be a number, not text"),
+        ("parameters.fore_mm=100", "must differ from upper_mm"),
+        ("fore_mm=90", "did you mean parameters.fore_mm?"),
+        ("nothing.here=90", "no such table"),
+        ("novalue", "must be key=value"),
+        ("=3", "must be key=value"),
+        ("name.x=3", "can name a file"),
+        ("supplies.bearing=69", "one of 623"),
+        ("mechanism=robot", "one of arm"),
+    ],
+)
 def test_a_wrong_override_is_blamed_on_the_command_line(read, override, words):
     error = refused(read, 'mechanism = "arm"\n[parts.bars]\nwidth_mm = 3\n', [override])
     assert error.path == "--set"

@@ -30,8 +30,10 @@ def test_a_resolved_design_reads_back_with_its_hash_and_is_stable(read, arm, rng
     for _ in range(50):
         upper, fore, tilt = rng.uniform(1.0, 400.0), rng.uniform(1.0, 400.0), rng.uniform(-89.0, 89.0)
         numbers = {"parameters.upper_mm": upper, "parameters.fore_mm": fore, "parts.bars.tilt_deg": tilt}
-        design = read('mechanism = "arm"\n[[allowed]]\npair = ["base", "fore"]\nreason = "a \\"tight\\" fit\\n#1"\n',
-                      [f"{key}={value!r}" for key, value in numbers.items()])
+        design = read(
+            'mechanism = "arm"\n[[allowed]]\npair = ["base", "fore"]\nreason = "a \\"tight\\" fit\\n#1"\n',
+            [f"{key}={value!r}" for key, value in numbers.items()],
+        )
         text = text_of(design, entry=arm)
         again = read(text)
         assert again.hash == design.hash
@@ -63,7 +65,7 @@ def test_one_blank_line_stands_before_each_table(arm):
 
 def test_the_shown_hint_of_an_allowed_contact_is_toml(arm):
     text = example_of("arm", entry=arm)
-    hint = text[text.index("# [[allowed]]"):].replace("# ", "")
+    hint = text[text.index("# [[allowed]]") :].replace("# ", "")
     assert tomllib.loads(hint)["allowed"][0]["reason"]
 
 

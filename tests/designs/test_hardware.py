@@ -17,14 +17,29 @@ ALL: dict[str, Turned] = {
     **{name: hardware.bearing(name) for name in supplies.names("bearings")},
     **{name: hardware.clip(name) for name in supplies.names("clips")},
     **{name: hardware.shim(name, 0.2) for name in supplies.names("shims")},
-    **{f"{name}x{x:g}": hardware.screw(name, x) for name in supplies.names("screws")
-       for x in supplies.screw(name).lengths},
-    **{f"{name}:{part.__name__}": part(name) for name in supplies.names("motors")
-       for part in (hardware.motor, hardware.motor_body, hardware.motor_shaft)},
+    **{
+        f"{name}x{x:g}": hardware.screw(name, x)
+        for name in supplies.names("screws")
+        for x in supplies.screw(name).lengths
+    },
+    **{
+        f"{name}:{part.__name__}": part(name)
+        for name in supplies.names("motors")
+        for part in (hardware.motor, hardware.motor_body, hardware.motor_shaft)
+    },
     "pin": hardware.pin(4.0, 20.0),
     "sharp pin": hardware.pin(4.0, 20.0, chamfer=0.0),
-    "pin with all": hardware.pin(6.0, 30.0, head_diameter=9.0, head_height=2.0, bore=3.0, bore_depth=10.0, thread="M3",
-                                 thread_depth=8.0, grooves=((26.0, 5.0, 0.7), (2.0, 5.5, 1.0))),
+    "pin with all": hardware.pin(
+        6.0,
+        30.0,
+        head_diameter=9.0,
+        head_height=2.0,
+        bore=3.0,
+        bore_depth=10.0,
+        thread="M3",
+        thread_depth=8.0,
+        grooves=((26.0, 5.0, 0.7), (2.0, 5.5, 1.0)),
+    ),
     "tube": hardware.pin(6.0, 30.0, bore=3.0),
     "spacer": hardware.spacer(4.0, 6.0, 3.0),
 }
@@ -37,12 +52,18 @@ def corners(feature: Turned) -> list[Corner]:
 def pappus(feature: Turned) -> float:
     """Volume [mm3] swept by the profile, positive for one that runs counter-clockwise in (r, z)."""
     points = corners(feature)
-    return math.pi / 3.0 * sum((r1 + r2) * (r1 * z2 - r2 * z1)
-                               for (r1, z1), (r2, z2) in zip(points, points[1:] + points[:1], strict=True))
+    return (
+        math.pi
+        / 3.0
+        * sum(
+            (r1 + r2) * (r1 * z2 - r2 * z1) for (r1, z1), (r2, z2) in zip(points, points[1:] + points[:1], strict=True)
+        )
+    )
 
 
 def crosses(a: Corner, b: Corner, c: Corner, d: Corner) -> bool:
     """Whether the segments ab and cd cross or touch."""
+
     def side(p: Corner, q: Corner, s: Corner) -> float:
         return (q[0] - p[0]) * (s[1] - p[1]) - (q[1] - p[1]) * (s[0] - p[0])
 
@@ -85,6 +106,7 @@ def test_a_profile_is_a_simple_polygon_beside_the_axis(feature: Turned) -> None:
 def test_the_look_at_a_profile_finds_a_crossing_and_a_negative_radius() -> None:
     def turned(*points: Corner) -> Turned:
         return hardware._turned(*points)
+
     assert faults(turned((1, 0), (2, 1), (2, 0), (1, 1))) == ["edges 0 and 2 meet"]
     assert faults(turned((-1, 0), (2, 0), (2, 1))) == ["radius -1"]
     assert "edge at (1, 0) has no length" in faults(turned((1, 0), (2, 0), (2, 1), (1, 0)))
@@ -96,9 +118,12 @@ def test_a_plain_pin_has_the_volume_of_a_cylinder() -> None:
 
 def test_a_pin_with_everything_has_the_volume_of_its_pieces() -> None:
     volume = (
-        frustum(8.4, 9.0, 0.3) + cylinder(9.0, 1.7)  # head, chamfered below
-        + cylinder(6.0, 29.7) + frustum(6.0, 5.4, 0.3)
-        - (cylinder(6.0, 1.0) - cylinder(5.5, 1.0)) - (cylinder(6.0, 0.7) - cylinder(5.0, 0.7))  # grooves
+        frustum(8.4, 9.0, 0.3)
+        + cylinder(9.0, 1.7)  # head, chamfered below
+        + cylinder(6.0, 29.7)
+        + frustum(6.0, 5.4, 0.3)
+        - (cylinder(6.0, 1.0) - cylinder(5.5, 1.0))
+        - (cylinder(6.0, 0.7) - cylinder(5.0, 0.7))  # grooves
         - cylinder(3.0, 10.0)
     )
     feature = ALL["pin with all"]
@@ -222,8 +247,10 @@ def test_a_pin_that_cannot_be_turned_is_refused_by_the_number_at_fault(field: st
     assert caught.value.field == field
 
 
-@pytest.mark.parametrize(("field", "numbers"), [("spacer.bore", (0.0, 6.0, 1.0)), ("spacer.outer", (4.0, 4.0, 1.0)),
-                                                ("spacer.length", (4.0, 6.0, 0.0))])
+@pytest.mark.parametrize(
+    ("field", "numbers"),
+    [("spacer.bore", (0.0, 6.0, 1.0)), ("spacer.outer", (4.0, 4.0, 1.0)), ("spacer.length", (4.0, 6.0, 0.0))],
+)
 def test_a_spacer_without_wall_or_length_is_refused(field: str, numbers: tuple[float, float, float]) -> None:
     with pytest.raises(ParameterError) as caught:
         hardware.spacer(*numbers)
@@ -242,11 +269,20 @@ def test_a_purchased_part_carries_designation_mass_and_material() -> None:
     row = supplies.bearing("688ZZ")
     part = hardware.purchased_part("bearing_1", hardware.bearing(row.name), row, at, fit="press N7")
     assert (part.purchased, part.mass, part.material, part.runs_in_joint, part.at) == (
-        "688ZZ", row.mass, "steel_100cr6", True, at)
+        "688ZZ",
+        row.mass,
+        "steel_100cr6",
+        True,
+        at,
+    )
     bolt = supplies.screw("ISO4762-M4")
     part = hardware.purchased_part("screw_1", hardware.screw(bolt.name, 16.0), bolt, length=16.0)
     assert (part.purchased, part.mass, part.material, part.runs_in_joint) == (
-        "ISO4762-M4x16", bolt.mass_of(16.0), "stainless_1_4301", False)
+        "ISO4762-M4x16",
+        bolt.mass_of(16.0),
+        "stainless_1_4301",
+        False,
+    )
     ring = supplies.shim("DIN988-4x8")
     part = hardware.purchased_part("shim_1", hardware.shim(ring.name, 0.2), ring, length=0.2)
     assert (part.purchased, part.mass) == ("DIN988-4x8x0.2", None)

@@ -35,10 +35,15 @@ def test_the_formula_gives_the_reference_value():
     assert math.degrees(cone_half_angle(SOCKET_20)) == pytest.approx(55.66, abs=5e-3)
 
 
-@pytest.mark.parametrize(("change", "degrees"), [
-    ({"rim_diameter": 15.6}, 0.20), ({"cover_face": 4.3}, -0.57), ({"countersink_depth": 1.1}, 0.58),
-    ({"root_diameter": 3.6}, -0.35),
-])
+@pytest.mark.parametrize(
+    ("change", "degrees"),
+    [
+        ({"rim_diameter": 15.6}, 0.20),
+        ({"cover_face": 4.3}, -0.57),
+        ({"countersink_depth": 1.1}, 0.58),
+        ({"root_diameter": 3.6}, -0.35),
+    ],
+)
 def test_the_formula_has_the_sensitivities_of_the_reference(change, degrees):
     moved = cone_half_angle(replace(SOCKET_16, **change)) - cone_half_angle(SOCKET_16)
     assert math.degrees(moved) == pytest.approx(degrees, abs=0.012)
@@ -56,33 +61,36 @@ def test_every_number_has_a_reason():
     assert len(list(fields_of(SphericalJointDimensions))) == len(fields(SphericalJointDimensions))
 
 
-@pytest.mark.parametrize(("change", "field"), [
-    ({"rim_diameter": 16.0}, "ball_diameter_mm"),
-    ({"ball_diameter": 15.0}, "ball_diameter_mm"),
-    ({"root_diameter": 17.0}, "root_diameter_mm"),
-    ({"stem_diameter": 4.0}, "stem_diameter_mm"),
-    ({"shoulder_height": 8.0}, "shoulder_height_mm"),
-    ({"stem_length": 15.0}, "stem_length_mm"),
-    ({"stud_diameter": 8.0}, "stud_diameter_mm"),
-    ({"tommy_hole": 4.5}, "tommy_hole_mm"),
-    ({"cover_face": 1.6}, "cover_face_mm"),
-    ({"rim_diameter": 15.0, "cover_face": 4.0}, "rim_diameter_mm"),
-    ({"cover_thickness": 1.6}, "cover_thickness_mm"),
-    ({"cover_thickness": 4.6}, "cover_thickness_mm"),
-    ({"ring_outer": 17.0}, "ring_outer_mm"),
-    ({"upper_ring_foot": 73.0 * DEG}, "upper_ring_foot_deg"),
-    ({"lower_ring_foot": 91.0 * DEG}, "lower_ring_foot_deg"),
-    ({"lower_ring_foot": 165.0 * DEG, "grease_pocket": 0.2}, "grease_pocket_mm"),
-    ({"screw_circle": 24.0}, "screw_circle_mm"),
-    ({"cover_diameter": 33.0}, "screw_circle_mm"),
-    ({"countersink_angle": 150.0 * DEG}, "countersink_depth_mm"),
-    ({"n_screws": 12, "screw": "ISO10642-M4"}, "screw_circle_mm"),
-    ({"screw_length": 7.0}, "screw_length_mm"),
-    ({"screw_depth": 4.0}, "screw_depth_mm"),
-    ({"screw_depth": 30.0}, "screw_depth_mm"),
-    ({"mount_depth": 7.4}, "mount_depth_mm"),
-    ({"mount_diameter": 20.0}, "mount_diameter_mm"),
-])
+@pytest.mark.parametrize(
+    ("change", "field"),
+    [
+        ({"rim_diameter": 16.0}, "ball_diameter_mm"),
+        ({"ball_diameter": 15.0}, "ball_diameter_mm"),
+        ({"root_diameter": 17.0}, "root_diameter_mm"),
+        ({"stem_diameter": 4.0}, "stem_diameter_mm"),
+        ({"shoulder_height": 8.0}, "shoulder_height_mm"),
+        ({"stem_length": 15.0}, "stem_length_mm"),
+        ({"stud_diameter": 8.0}, "stud_diameter_mm"),
+        ({"tommy_hole": 4.5}, "tommy_hole_mm"),
+        ({"cover_face": 1.6}, "cover_face_mm"),
+        ({"rim_diameter": 15.0, "cover_face": 4.0}, "rim_diameter_mm"),
+        ({"cover_thickness": 1.6}, "cover_thickness_mm"),
+        ({"cover_thickness": 4.6}, "cover_thickness_mm"),
+        ({"ring_outer": 17.0}, "ring_outer_mm"),
+        ({"upper_ring_foot": 73.0 * DEG}, "upper_ring_foot_deg"),
+        ({"lower_ring_foot": 91.0 * DEG}, "lower_ring_foot_deg"),
+        ({"lower_ring_foot": 165.0 * DEG, "grease_pocket": 0.2}, "grease_pocket_mm"),
+        ({"screw_circle": 24.0}, "screw_circle_mm"),
+        ({"cover_diameter": 33.0}, "screw_circle_mm"),
+        ({"countersink_angle": 150.0 * DEG}, "countersink_depth_mm"),
+        ({"n_screws": 12, "screw": "ISO10642-M4"}, "screw_circle_mm"),
+        ({"screw_length": 7.0}, "screw_length_mm"),
+        ({"screw_depth": 4.0}, "screw_depth_mm"),
+        ({"screw_depth": 30.0}, "screw_depth_mm"),
+        ({"mount_depth": 7.4}, "mount_depth_mm"),
+        ({"mount_diameter": 20.0}, "mount_diameter_mm"),
+    ],
+)
 def test_a_set_that_cannot_be_made_is_refused_by_name(change, field):
     with pytest.raises(ParameterError) as caught:
         check_dimensions(replace(SOCKET_16, **change))

@@ -22,20 +22,39 @@ MOTORS = [supplies.motor(name) for name in supplies.names("motors")]
 
 #: ISO 15: bore, outside diameter, width [mm].
 ISO_15 = {
-    "623ZZ": (3, 10, 4), "MR104ZZ": (4, 10, 4), "684ZZ": (4, 9, 4), "694ZZ": (4, 11, 4), "624ZZ": (4, 13, 5),
-    "MR105ZZ": (5, 10, 4), "625ZZ": (5, 16, 5), "MR126ZZ": (6, 12, 4), "626ZZ": (6, 19, 6), "688ZZ": (8, 16, 5),
-    "608ZZ": (8, 22, 7), "6000ZZ": (10, 26, 8),
+    "623ZZ": (3, 10, 4),
+    "MR104ZZ": (4, 10, 4),
+    "684ZZ": (4, 9, 4),
+    "694ZZ": (4, 11, 4),
+    "624ZZ": (4, 13, 5),
+    "MR105ZZ": (5, 10, 4),
+    "625ZZ": (5, 16, 5),
+    "MR126ZZ": (6, 12, 4),
+    "626ZZ": (6, 19, 6),
+    "688ZZ": (8, 16, 5),
+    "608ZZ": (8, 22, 7),
+    "6000ZZ": (10, 26, 8),
 }
 #: ISO 4762: head diameter, head height, across flats, pitch [mm].
 ISO_4762 = {
-    "M2": (3.8, 2, 1.5, 0.4), "M2.5": (4.5, 2.5, 2, 0.45), "M3": (5.5, 3, 2.5, 0.5), "M4": (7, 4, 3, 0.7),
-    "M5": (8.5, 5, 4, 0.8), "M6": (10, 6, 5, 1),
+    "M2": (3.8, 2, 1.5, 0.4),
+    "M2.5": (4.5, 2.5, 2, 0.45),
+    "M3": (5.5, 3, 2.5, 0.5),
+    "M4": (7, 4, 3, 0.7),
+    "M5": (8.5, 5, 4, 0.8),
+    "M6": (10, 6, 5, 1),
 }
 #: ISO 10642: theoretical head diameter, head height, across flats [mm].
 ISO_10642 = {"M3": (6.72, 1.86, 2), "M4": (8.96, 2.48, 2.5), "M5": (11.2, 3.1, 3), "M6": (13.44, 3.72, 4)}
 #: DIN 6799: smallest and largest shaft, thickness [mm].
-DIN_6799 = {"1.9": (2.5, 3, 0.5), "2.3": (3, 4, 0.6), "3.2": (4, 5, 0.6), "4": (5, 7, 0.7), "5": (6, 8, 0.7),
-            "6": (7, 9, 0.7)}
+DIN_6799 = {
+    "1.9": (2.5, 3, 0.5),
+    "2.3": (3, 4, 0.6),
+    "3.2": (4, 5, 0.6),
+    "4": (5, 7, 0.7),
+    "5": (6, 8, 0.7),
+    "6": (7, 9, 0.7),
+}
 
 
 @pytest.mark.parametrize(("name", "dimensions"), ISO_15.items())
@@ -153,8 +172,13 @@ def test_a_shim_is_bought_in_a_thickness_that_is_sold() -> None:
 
 @pytest.mark.parametrize(
     ("read", "kind"),
-    [(supplies.bearing, "bearing"), (supplies.screw, "screw"), (supplies.clip, "clip"), (supplies.shim, "shim"),
-     (supplies.motor, "motor")],
+    [
+        (supplies.bearing, "bearing"),
+        (supplies.screw, "screw"),
+        (supplies.clip, "clip"),
+        (supplies.shim, "shim"),
+        (supplies.motor, "motor"),
+    ],
 )
 def test_an_unknown_name_lists_the_known_ones(read, kind: str) -> None:
     with pytest.raises(UnknownNameError) as caught:

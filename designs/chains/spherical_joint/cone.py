@@ -75,29 +75,42 @@ def formula_warnings(d: SphericalJointDimensions) -> tuple[FormulaWarning, ...]:
 def _countersink(d: SphericalJointDimensions, r: float) -> FormulaWarning:
     stop = _edge_stop(d.mouth_radius, d.cover_face, d.root_diameter / 2.0)
     name = "plain hole instead of a countersink" if d.countersink_angle == 0.0 else "countersink too narrow"
-    return FormulaWarning(name=name, field="countersink_angle_deg", allows=stop,
-                          needed=f"an included angle of at least {math.degrees(2.0 * r):.1f} deg")
+    return FormulaWarning(
+        name=name,
+        field="countersink_angle_deg",
+        allows=stop,
+        needed=f"an included angle of at least {math.degrees(2.0 * r):.1f} deg",
+    )
 
 
 def _fillet(d: SphericalJointDimensions) -> FormulaWarning:
     rim = math.hypot(d.rim_diameter / 2.0, d.rim_height)
     stop = math.atan2(d.rim_diameter / 2.0, d.rim_height) - bar_polar_angle(d, rim)
-    return FormulaWarning(name="root fillet reaches the rim", field="root_fillet_mm", allows=stop,
-                          needed=f"a fillet that ends {rim - d.ball_radius:.3f} mm off the ball")
+    return FormulaWarning(
+        name="root fillet reaches the rim",
+        field="root_fillet_mm",
+        allows=stop,
+        needed=f"a fillet that ends {rim - d.ball_radius:.3f} mm off the ball",
+    )
 
 
 def _ring_edge(d: SphericalJointDimensions, r: float) -> FormulaWarning:
     reach = bar_polar_angle(d, d.seat_radius)
-    return FormulaWarning(name="edge of the upper ring too high", field="land_mm", allows=d.upper_ring_mouth - reach,
-                          needed=f"a seat that ends at a polar angle of at least {math.degrees(r + reach):.1f} deg: "
-                          "a thicker land or a deeper cover")
+    return FormulaWarning(
+        name="edge of the upper ring too high",
+        field="land_mm",
+        allows=d.upper_ring_mouth - reach,
+        needed=f"a seat that ends at a polar angle of at least {math.degrees(r + reach):.1f} deg: "
+        "a thicker land or a deeper cover",
+    )
 
 
 def _land_edge(d: SphericalJointDimensions) -> FormulaWarning:
     edge = math.hypot(d.rim_diameter / 2.0, d.cover_inner_face)
     stop = math.atan2(d.rim_diameter / 2.0, d.cover_inner_face) - bar_polar_angle(d, edge)
-    return FormulaWarning(name="root fillet reaches the land", field="root_fillet_mm", allows=stop,
-                          needed="a smaller fillet")
+    return FormulaWarning(
+        name="root fillet reaches the land", field="root_fillet_mm", allows=stop, needed="a smaller fillet"
+    )
 
 
 def _shoulder(d: SphericalJointDimensions, r: float) -> FormulaWarning:
@@ -105,5 +118,9 @@ def _shoulder(d: SphericalJointDimensions, r: float) -> FormulaWarning:
     corners = ((R - c, h), (R, h + c))
     stop = min(math.acos(min(1.0, a / math.hypot(x, z))) - math.atan2(x, z) for x, z in corners)
     least = max((a + x * math.sin(r)) / math.cos(r) - (z - h) for x, z in corners)
-    return FormulaWarning(name="shoulder too near", field="shoulder_height_mm", allows=stop,
-                          needed=f"a shoulder at {least:.2f} mm or more")
+    return FormulaWarning(
+        name="shoulder too near",
+        field="shoulder_height_mm",
+        allows=stop,
+        needed=f"a shoulder at {least:.2f} mm or more",
+    )

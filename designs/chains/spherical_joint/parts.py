@@ -20,8 +20,14 @@ def _ring(d: SphericalJointDimensions, mouth: float, foot: float) -> Turned:
     """A ring whose bore is the spherical seat between two polar angles and whose faces are flat."""
     R, outer = d.seat_radius, d.ring_outer / 2.0
     (r0, z0), (r1, z1) = _polar(R, mouth), _polar(R, foot)
-    return Turned(profile=(Vertex(r=outer, z=z1), Vertex(r=outer, z=z0), Vertex(r=r0, z=z0),
-                           Vertex(r=r1, z=z1, mid=_polar(R, (mouth + foot) / 2.0))))
+    return Turned(
+        profile=(
+            Vertex(r=outer, z=z1),
+            Vertex(r=outer, z=z0),
+            Vertex(r=r0, z=z0),
+            Vertex(r=r1, z=z1, mid=_polar(R, (mouth + foot) / 2.0)),
+        )
+    )
 
 
 def ball_bar(d: SphericalJointDimensions) -> Turned:
@@ -30,22 +36,37 @@ def ball_bar(d: SphericalJointDimensions) -> Turned:
     R, q, f, c = d.ball_radius, d.root_diameter / 2.0, d.root_fillet, d.shoulder_chamfer
     z_f = math.sqrt((R + f) ** 2 - (q + f) ** 2)
     touch = math.asin((q + f) / (R + f))
-    profile = [Vertex(r=0.0, z=-R), Vertex(r=R * math.sin(touch), z=R * math.cos(touch),
-                                           mid=_polar(R, (math.pi + touch) / 2.0))]
+    profile = [
+        Vertex(r=0.0, z=-R),
+        Vertex(r=R * math.sin(touch), z=R * math.cos(touch), mid=_polar(R, (math.pi + touch) / 2.0)),
+    ]
     if f > 0.0:
         # The arc turns from the direction of the ball's centre to that of the axis.
         toward = (-math.sin(touch) - 1.0, -math.cos(touch))
         scale = f / math.hypot(*toward)
         profile.append(Vertex(r=q, z=z_f, mid=(q + f + scale * toward[0], z_f + scale * toward[1])))
     stem, stud, end = d.stem_diameter / 2.0, d.stud_diameter / 2.0, d.stem_length + d.stud_length
-    corners = [(q, d.shoulder_height), (stem - c, d.shoulder_height), (stem, d.shoulder_height + c),
-               (stem, d.stem_length), (stud, d.stem_length), (stud, end), (0.0, end)]
+    corners = [
+        (q, d.shoulder_height),
+        (stem - c, d.shoulder_height),
+        (stem, d.shoulder_height + c),
+        (stem, d.stem_length),
+        (stud, d.stem_length),
+        (stud, end),
+        (0.0, end),
+    ]
     profile += [Vertex(r=r, z=z) for r, z in _without_repeats(corners)]
     tommy: tuple[CrossHole, ...] = ()
     if d.tommy_hole:
         height = d.stem_length - d.tommy_hole / 2.0 - _TOMMY_MARGIN
-        tommy = (CrossHole(origin=(-stem - 1.0, 0.0, height), direction=(1.0, 0.0, 0.0), diameter=d.tommy_hole,
-                           depth=2.0 * stem + 2.0),)
+        tommy = (
+            CrossHole(
+                origin=(-stem - 1.0, 0.0, height),
+                direction=(1.0, 0.0, 0.0),
+                diameter=d.tommy_hole,
+                depth=2.0 * stem + 2.0,
+            ),
+        )
     return Turned(profile=tuple(profile), cross_holes=tommy)
 
 
@@ -79,16 +100,30 @@ def shell_cover(d: SphericalJointDimensions) -> Turned:
     """The cover: flat outside, countersunk opening, land, recess that centres it on the upper ring."""
     check_dimensions(d)
     rim, bore, outer = d.rim_diameter / 2.0, d.ring_outer / 2.0, d.cover_diameter / 2.0
-    corners = [(rim, d.cover_inner_face), (bore, d.cover_inner_face), (bore, d.bushing_top), (outer, d.bushing_top),
-               (outer, d.cover_face), (d.mouth_radius, d.cover_face)]
+    corners = [
+        (rim, d.cover_inner_face),
+        (bore, d.cover_inner_face),
+        (bore, d.bushing_top),
+        (outer, d.bushing_top),
+        (outer, d.cover_face),
+        (d.mouth_radius, d.cover_face),
+    ]
     if d.mouth_radius > rim:
         corners.append((rim, d.rim_height))
     if d.bushing_top >= d.cover_inner_face:  # as thick as its lip: no recess, and no step
         corners[1:3] = []
     row = d.screw_row
-    holes = (Hole(top=d.cover_face, diameter=row.clearance_hole, head_diameter=row.countersink_diameter,
-                  head_depth=(row.countersink_diameter - row.clearance_hole) / 2.0, countersink=True, n=d.n_screws,
-                  pitch_radius=d.screw_circle / 2.0),)
+    holes = (
+        Hole(
+            top=d.cover_face,
+            diameter=row.clearance_hole,
+            head_diameter=row.countersink_diameter,
+            head_depth=(row.countersink_diameter - row.clearance_hole) / 2.0,
+            countersink=True,
+            n=d.n_screws,
+            pitch_radius=d.screw_circle / 2.0,
+        ),
+    )
     return Turned(profile=tuple(Vertex(r=r, z=z) for r, z in corners), holes=holes)
 
 
@@ -96,11 +131,25 @@ def bushing(d: SphericalJointDimensions) -> Turned:
     """The housing: bore for rings and shim, room under the ball, threads for the cover and for one screw behind."""
     check_dimensions(d)
     bore, outer, seat = d.ring_outer / 2.0, d.cover_diameter / 2.0, d.lower_ring_bottom - d.shim_thickness
-    corners = ((0.0, d.back), (outer, d.back), (outer, d.bushing_top), (bore, d.bushing_top), (bore, seat),
-               (d.pocket_radius, seat), (d.pocket_radius, d.pocket_bottom), (0.0, d.pocket_bottom))
+    corners = (
+        (0.0, d.back),
+        (outer, d.back),
+        (outer, d.bushing_top),
+        (bore, d.bushing_top),
+        (bore, seat),
+        (d.pocket_radius, seat),
+        (d.pocket_radius, d.pocket_bottom),
+        (0.0, d.pocket_bottom),
+    )
     holes = (
-        Hole(top=d.bushing_top, diameter=d.screw_row.diameter, depth=d.screw_depth, thread=d.screw_row.thread,
-             n=d.n_screws, pitch_radius=d.screw_circle / 2.0),
+        Hole(
+            top=d.bushing_top,
+            diameter=d.screw_row.diameter,
+            depth=d.screw_depth,
+            thread=d.screw_row.thread,
+            n=d.n_screws,
+            pitch_radius=d.screw_circle / 2.0,
+        ),
         Hole(top=d.back, diameter=d.mount_diameter, depth=d.mount_depth, upwards=True, thread=f"M{d.mount_diameter:g}"),
     )
     return Turned(profile=tuple(Vertex(r=r, z=z) for r, z in corners), holes=holes)

@@ -34,12 +34,22 @@ def socket_parts(
         ("upper_ring", upper_ring(d), seats, "H7/h6 in bushing and cover, under the cover"),
         ("cover", shell_cover(d), housing, "centred on the upper ring, screwed to the bushing"),
     )
-    parts = [Part(name=f"{name}_{part}", feature=feature, at=at, material=material, runs_in_joint=True, fit=fit)
-             for part, feature, material, fit in made]
+    parts = [
+        Part(name=f"{name}_{part}", feature=feature, at=at, material=material, runs_in_joint=True, fit=fit)
+        for part, feature, material, fit in made
+    ]
     feature, radius = screw_feature(d.screw, d.screw_length), d.screw_circle / 2.0
     for k in range(d.n_screws):
         turn = k * math.tau / d.n_screws
         place = lay.at(radius * math.cos(turn), radius * math.sin(turn), d.cover_face, flip=True)
-        parts.append(purchased_part(f"{name}_cover_screw_{k + 1}", feature, d.screw_row, place, length=d.screw_length,
-                                    fit="flush in the cover, threaded into the bushing"))
+        parts.append(
+            purchased_part(
+                f"{name}_cover_screw_{k + 1}",
+                feature,
+                d.screw_row,
+                place,
+                length=d.screw_length,
+                fit="flush in the cover, threaded into the bushing",
+            )
+        )
     return tuple(parts)
