@@ -78,7 +78,7 @@ def measure_joint_limits(
         findings += _findings_of(joint, measured, limits[joint.name], bench)
     if progress is not None:
         progress(len(mechanism.joints), len(mechanism.joints), "")
-    looked_at = {"joints": len(limits), "measured": bench.n_measured, "azimuths": n_azimuths * len(cones)}
+    looked_at = {"joints": len(limits), "distinct": bench.n_distinct, "azimuths": n_azimuths * len(cones)}
     return CheckResult(
         check="joint-limits", looked_at=looked_at, findings=tuple(findings), facts={"limits": limits, "cones": cones}
     )
@@ -94,7 +94,12 @@ class _Bench:
         self.poses = dict(zip((b.name for b in mechanism.bodies), poses, strict=True))
         self._notebook = Notebook(store)
         self._seen: dict[str, Surroundings] = {}
-        self.n_measured = 0
+        self._keys: set[str] = set()
+
+    @property
+    def n_distinct(self) -> int:
+        """How many of the joints differ; equal ones share a measurement, whether taken now or recalled."""
+        return len(self._keys)
 
     def measure(self, joint: Joint, n_azimuths: int) -> JointTravel:
         """What was measured on this joint, or on one that equals it."""
@@ -113,9 +118,9 @@ class _Bench:
             rounded(T_back[:3, :3] @ joint.axis_parent),
             n_azimuths,
         )
+        self._keys.add(key)
         facts = self._notebook.recall(key)
         if facts is None:
-            self.n_measured += 1
             where = f"{self.assembly.design.name}: {joint.name}"
             passage = build_passage(self._look_at(parent), self._look_at(child), joint, where)
             facts = _facts_of(measure_joint(passage, joint, T, n_azimuths), parent, T_back)

@@ -48,19 +48,23 @@ def differentiate(program: Program, names: Sequence[str], seeds: Sequence[Sequen
 def twist_seeds(program: Program) -> list[list[Number]]:
     """Rates of x, y, z, rx, ry, rz (turns about fixed X, Y, Z) for the six unit twists [v; omega] in base axes.
 
-    So `differentiate(p, ["active"], twist_seeds(p))` is the Jacobian of a mechanism that wrote none. Singular at
-    ry = +-90 degrees, where the three angles are.
+    Further inputs (a grip) follow with a direction each. So `differentiate(p, ["active"], twist_seeds(p))` is the
+    Jacobian of a mechanism that wrote none. Singular at ry = +-90 degrees, where the three angles are.
     """
     ry, rz = program.graph.input(4), program.graph.input(5)
     c, s, t = cos(rz), sin(rz), sin(ry) / cos(ry)
     zero = [0.0, 0.0, 0.0]
-    return [
+    more = len(program.inputs) - 6
+    twists: list[list[Number]] = [
         [1.0, 0.0, 0.0, *zero],
         [0.0, 1.0, 0.0, *zero],
         [0.0, 0.0, 1.0, *zero],
         [*zero, c / cos(ry), -s, c * t],
         [*zero, s / cos(ry), c, s * t],
         [*zero, 0.0, 0.0, 1.0],
+    ]
+    return [[*row, *[0.0] * more] for row in twists] + [
+        [float(k == i) for k in range(len(program.inputs))] for i in range(6, 6 + more)
     ]
 
 

@@ -162,18 +162,29 @@ def test_a_mechanism_whose_bodies_miss_their_joint_is_refused(assemble):
         measure_joint_limits(assembly)
 
 
-def test_equal_joints_are_measured_once_and_remembered_on_disk(assemble, tmp_path):
+def test_equal_joints_are_measured_once_and_remembered_on_disk(assemble, tmp_path, monkeypatch):
+    calls = []
+
+    from linkwright.analysis import joint_limits as joint_limits_module
+    from linkwright.analysis.joint_travel import measure_joint
+
+    monkeypatch.setattr(
+        joint_limits_module, "measure_joint", lambda *args: (calls.append(args), measure_joint(*args))[1]
+    )
     store = Store(tmp_path)
     posts = (post(0.0, 30.0, 2.0, -5.0, 5.0),)
     assembly = assemble(JointKind.REVOLUTE, (pin(), *posts), (straight_arm(60.0, 5.0),), 0.0, 1.0, n_joints=2)
     first = measure_joint_limits(assembly, store=store)
+    assert first.looked_at == {"joints": 2, "distinct": 1, "azimuths": 0}
+    assert len(calls) == 1
     again = measure_joint_limits(assembly, store=store)
-    assert first.looked_at["measured"] == 1 and again.looked_at["measured"] == 0
-    assert again.facts["limits"] == first.facts["limits"]
+    assert len(calls) == 1
+    assert again == first
     entry = next((tmp_path / "measured").rglob("*.json"))
     entry.write_text(entry.read_text().replace("true", "false", 1))
     damaged = measure_joint_limits(assembly, store=store)
-    assert damaged.looked_at["measured"] == 1 and damaged.facts["limits"] == first.facts["limits"]
+    assert len(calls) == 2
+    assert damaged == first
 
 
 def test_a_store_that_cannot_be_written_costs_a_warning_only(assemble, tmp_path):

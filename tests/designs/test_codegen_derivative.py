@@ -27,7 +27,7 @@ def poses(each_design, feasible_poses, rng):
 
 def test_the_derived_jacobian_is_the_written_one(each_mechanism, poses):
     program = trace_mechanism(each_mechanism, ("active", "jacobian"))
-    if len(each_mechanism.task) == 6:
+    if [c.name for c in each_mechanism.task[:6]] == ["x", "y", "z", "rx", "ry", "rz"]:
         seeds = twist_seeds(program)
     elif program.output("jacobian").shape[-1] == len(program.inputs):
         seeds = None
