@@ -114,8 +114,8 @@ def _check_reach(design: Design, poses: Array) -> tuple[Array, list[Finding]]:
                 severity=Severity.ERROR,
                 subject=(reason,),
                 pose=_shown(design, poses[worst]),
-                message=f"{len(of_reason)} of {len(poses)} poses of the workspace cannot be reached: {reason} misses by "
-                f"{-float(solution.margins[worst, column]):.4g} at the worst",
+                message=f"{len(of_reason)} of {len(poses)} poses of the workspace cannot be reached: {reason} misses "
+                f"by {-float(solution.margins[worst, column]):.4g} at the worst",
                 measured=float(solution.margins[worst, column]),
                 limit=0.0,
                 key="workspace",
@@ -228,8 +228,8 @@ def _judge(assembly: Assembly, pair: _Pair, poses: Array, Ts: Array) -> list[Fin
             severity=Severity.ERROR,
             subject=names,
             pose=_shown(design, poses[scan.pose]),
-            message=f"{names[0]} and {names[1]} come within {pair.clearance:.4g} mm ({scan.value:.4g} mm between meshes, "
-            f"less {pair.allowance:g} mm that these may lie off the solids); {least:g} mm are asked for, and "
+            message=f"{names[0]} and {names[1]} come within {pair.clearance:.4g} mm ({scan.value:.4g} mm between "
+            f"meshes, less {pair.allowance:g} mm that these may lie off the solids); {least:g} mm are asked for, and "
             f"{n_near} of {len(poses)} poses are nearer",
             measured=pair.clearance,
             limit=least,

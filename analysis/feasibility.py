@@ -21,7 +21,7 @@ Progress = Callable[[int, int, str], None]
 
 
 def declared_poses(assembly: Assembly) -> np.ndarray:
-    """The poses that the checks visit: home, then the seeded sample of the declared workspace, shape (n + 1, n_task)."""
+    """The poses that the checks visit, shape (n + 1, n_task): home, then the sample of the declared workspace."""
     design = assembly.design
     lower, upper = design.box()
     sample = sample_box(lower, upper, design.sampling.n_poses, design.sampling.seed)

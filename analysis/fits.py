@@ -88,8 +88,8 @@ def _overlaps(assembly: Assembly, body: AssembledBody, notebook: Notebook) -> li
                 rule="part-overlap",
                 severity=Severity.ERROR,
                 subject=(body.body.kind, a.part.name, b.part.name),
-                message=f"{body.body.kind}: {a.part.name} and {b.part.name} share {volume:.4g} mm3; parts of one body may "
-                "touch, not overlap",
+                message=f"{body.body.kind}: {a.part.name} and {b.part.name} share {volume:.4g} mm3; parts of one body "
+                "may touch, not overlap",
                 measured=volume,
                 limit=LEAST_OVERLAP,
                 unit="mm3",

@@ -204,12 +204,12 @@ def _formula_findings(joint: Joint, measured: float, formula: float | None) -> l
             rule="cone-formula",
             severity=Severity.WARNING,
             subject=(joint.name, joint.parent, joint.child),
-            message=f"{joint.name} leans by {measured:.3f} deg on its solids, but by {formula:.3f} deg according to the "
-            "formula",
+            message=f"{joint.name} leans by {measured:.3f} deg on its solids, but by {formula:.3f} deg according to "
+            "the formula",
             measured=measured,
             limit=formula,
             unit="deg",
-            suggestion="look at countersink, shoulder, root fillet and ring edge: one of them stops the bar before the rim",
+            suggestion="look at countersink, shoulder, root fillet and ring edge: one stops the bar before the rim",
         )
     ]
 
@@ -235,8 +235,8 @@ def _findings_of(joint: Joint, measured: JointTravel, limits: Mapping[str, Any],
                 rule="joint-limit",
                 severity=Severity.ERROR,
                 subject=(joint.name, joint.parent, joint.child),
-                message=f"{joint.name} is declared to go {'down' if sign < 0 else 'up'} to {declared / scale:.3f} {unit}, "
-                f"but its solids touch at {found / scale:.3f} {unit}" + (f" ({by})" if by else ""),
+                message=f"{joint.name} is declared to go {'down' if sign < 0 else 'up'} to {declared / scale:.3f} "
+                f"{unit}, but its solids touch at {found / scale:.3f} {unit}" + (f" ({by})" if by else ""),
                 measured=found / scale,
                 limit=declared / scale,
                 unit=unit,

@@ -78,8 +78,14 @@ def build_assembly(
         deviation: of the meshes [mm]; None takes the design's `clearance.mesh_deviation`.
 
     Raises:
-        BuildError: names design, body and part.
+        BuildError: names design, body and part; or the mechanism has no parts at all.
     """
+    if design.mechanism.bodies and not design.mechanism.has_solids:
+        raise BuildError(
+            design.name,
+            f"{design.mechanism.name} has kinematics but no parts yet, so there is nothing to build or to check; "
+            "show, ik and fk work on it",
+        )
     if deviation is None:
         deviation = design.clearance.mesh_deviation
     kinds = _kinds(design)

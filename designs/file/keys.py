@@ -111,7 +111,7 @@ def workspace_leaf(coordinate: Coordinate, end: str) -> str:
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """ "; did you mean a or b?", or nothing if no known word is near; the second only if it is about as near."""
+    """The words "; did you mean a or b?" if known words are near (b only if about as near as a), else nothing."""
     near = near_words(word, known)
     return f"; did you mean {' or '.join(near)}?" if near else ""
 

@@ -93,7 +93,10 @@ class FormulaMechanism(Mechanism):
     def compute_jacobian(self, poses: Array) -> Array:
         """Velocity to active joint rates, shape (n, n_active, n_velocity)."""
         poses = np.asarray(poses, dtype=float)
-        rows = self.rate_rows(self._evaluate(poses, None, Requirements()))
+        state = self._evaluate(poses, None, Requirements())
+        # On a serial singularity a rate is infinite: a true answer, not a mishap to warn of.
+        with np.errstate(all="ignore"):
+            rows = self.rate_rows(state)
         return np.stack([_stacked(row, poses.shape[:-1]) for row in rows], axis=-2)
 
     def place_bodies(self, poses: Array) -> Array:

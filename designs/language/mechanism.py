@@ -94,6 +94,7 @@ class Mechanism(ABC):
         home: a pose well inside the workspace, shape (n_task,).
         branches: names of the inverse's working modes, the default first.
         assembly_mode: name of the forward kinematics' working assembly mode.
+        n_idle_freedoms: freedoms of bodies that neither the task nor a motor knows (a pen that turns in its ring).
     """
 
     name: str
@@ -106,6 +107,12 @@ class Mechanism(ABC):
     home: Array
     branches: tuple[str, ...]
     assembly_mode: str
+    n_idle_freedoms: int = 0
+
+    @property
+    def has_solids(self) -> bool:
+        """Some body has parts, so there is something to check and to build."""
+        return any(body.parts for body in self.bodies)
 
     @property
     def n_active(self) -> int:

@@ -6,6 +6,7 @@ import math
 from itertools import combinations
 
 import pytest
+
 from linkwright.designs.language import hardware, supplies
 from linkwright.designs.language.bodies import Placement
 from linkwright.designs.language.errors import ParameterError

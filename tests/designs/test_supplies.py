@@ -8,6 +8,7 @@ from importlib.resources import files
 from itertools import pairwise
 
 import pytest
+
 from linkwright.designs.language import supplies
 from linkwright.designs.language.errors import DesignFileError, ParameterError, UnknownNameError
 from linkwright.designs.language.materials import material

@@ -100,7 +100,7 @@ def test_a_part_that_cannot_be_made_is_named_with_design_kind_and_part(arm):
 
 @pytest.mark.parametrize(("bodies", "says"), [
     (lambda arm: (), "toy: the mechanism has no bodies"),
-    (lambda arm: (_body("one"),), "toy: one: the body has no parts"),
+    (lambda arm: (_body("one", *arm), _body("two")), "toy: two: the body has no parts"),
     (lambda arm: (_body("one", *arm), _body("one", *arm)), "toy: one: two bodies have this name"),
     (lambda arm: (_body("one", *arm), _body("two", *arm[:2])), "toy: two: its parts differ from those of one"),
     (lambda arm: (_body("one", arm[0], arm[0]),), "toy: one: several of its parts are called bar"),
@@ -110,3 +110,8 @@ def test_a_part_that_cannot_be_made_is_named_with_design_kind_and_part(arm):
 def test_bodies_that_contradict_themselves_are_refused(arm, bodies, says):
     with pytest.raises(BuildError, match=says):
         build_assembly(_design(*bodies(arm)), deviation=0.5)
+
+
+def test_a_mechanism_without_parts_is_refused_by_name(arm):
+    with pytest.raises(BuildError, match=r"^toy: .* has kinematics but no parts yet"):
+        build_assembly(_design(_body("one"), _body("two")))
