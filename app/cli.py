@@ -7,11 +7,14 @@ import json
 import sys
 import traceback
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import click
 
 from linkwright.designs.language.errors import DesignFileError, LinkwrightError
+
+from .options import mechanisms_option
 
 PASS, FINDINGS, FAILURE, INTERRUPTED = 0, 1, 2, 130
 
@@ -22,6 +25,7 @@ COMMANDS = {
     "show": "show",
     "ik": "inverse",
     "fk": "forward",
+    "dexterity": "dexterity",
     "check": "check",
     "release": "release",
     "schema": "schema",
@@ -72,7 +76,14 @@ def _tell(error: Exception, *, as_json: bool, debug: bool) -> None:
     for line in _message(error).splitlines():
         click.echo(click.style("error: ", fg="red", bold=True) + line, err=True)
     if not _is_expected(error) and not debug:
-        click.echo("a fault of linkwright, not of the design; run again with --debug for the details", err=True)
+        click.echo(f"a fault of {_culprit(error)}; run again with --debug for the details", err=True)
+
+
+def _culprit(error: Exception) -> str:
+    from linkwright.designs.outside import find_place
+
+    place = find_place(error)
+    return f"the mechanism at {place}" if place else "linkwright, not of the design"
 
 
 def _message(error: Exception) -> str:
@@ -109,13 +120,18 @@ def _plain(value: object) -> Any:
 
 @click.group(cls=Door, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110})
 @click.version_option(package_name="linkwright", prog_name="linkwright")
-def cli() -> None:
+@mechanisms_option
+def cli(mechanisms: tuple[Path, ...]) -> None:
     """From one design file to a mechanism that can be built, checked and controlled.
 
     DESIGN is a design file (.toml) or a name of the catalogue.
 
     Exit codes: 0 pass, 1 findings or poses out of reach, 2 wrong usage or an error, 130 interrupted.
     """
+    if mechanisms:
+        from linkwright.designs.outside import add_mechanisms
+
+        add_mechanisms(mechanisms)
 
 
 def main() -> None:

@@ -18,6 +18,16 @@ set_option = click.option(
 
 json_option = click.option("--json", "as_json", is_flag=True, help="Write JSON to stdout, errors too.")
 
+mechanisms_option = click.option(
+    "--mechanisms",
+    multiple=True,
+    type=click.Path(path_type=Path),
+    metavar="FILE.py",
+    envvar="LINKWRIGHT_MECHANISMS",
+    show_envvar=True,
+    help="Python file (or folder) with mechanisms of your own, its ENTRIES; repeatable. It is run.",
+)
+
 debug_option = click.option("--debug", is_flag=True, expose_value=False, help="Show the traceback of an error.")
 
 strict_option = click.option("--strict", is_flag=True, help="Count warnings as failures.")

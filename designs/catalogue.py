@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,7 +19,7 @@ from .kaist import mechanism as kaist
 from .kaist.workspace import KAIST_WORKSPACE
 from .kjist import mechanism as kjist
 from .kjist.workspace import KJIST_WORKSPACE
-from .language.errors import UnknownNameError
+from .language.errors import LinkwrightError, UnknownNameError
 from .language.mechanism import Coordinate, Mechanism
 from .pathos2 import mechanism as pathos2
 from .pathos2.workspace import PATHOS2_WORKSPACE
@@ -104,3 +104,25 @@ def entry(name: str) -> Entry:
     if name not in _ENTRIES:
         raise UnknownNameError("mechanism", name, names())
     return _ENTRIES[name]
+
+
+class NameTakenError(LinkwrightError):
+    """Two mechanisms of one name."""
+
+    def __init__(self, name: str, title: str) -> None:
+        super().__init__(f"there is already a mechanism called {name!r} ({title}); give yours another name")
+        self.name = name
+
+
+def add(entries: Iterable[Entry]) -> None:
+    """Take up mechanisms from outside the package, all or none; an entry that is there already stays.
+
+    Raises:
+        NameTakenError: another mechanism has one of the names.
+    """
+    joined = dict(_ENTRIES)
+    for new in entries:
+        taken = joined.setdefault(new.name, new)
+        if taken is not new:
+            raise NameTakenError(new.name, taken.title)
+    _ENTRIES.update(joined)

@@ -18,9 +18,9 @@ from linkwright.designs.codegen.program import Program
 from linkwright.designs.codegen.singular import singular_values
 from linkwright.designs.codegen.trace import trace_formula
 from linkwright.designs.language.errors import VacuousCheckError
-from linkwright.designs.language.formulas import FormulaMechanism
+from linkwright.designs.language.formulas import LIMIT_SLACK, FormulaMechanism
 from linkwright.designs.language.vectors import Vec, rot_fixed_xyz
-from linkwright.designs.language.vocabulary import Number, Require
+from linkwright.designs.language.vocabulary import Number, Require, fmin
 
 from ..pose_sets import PoseSet
 from .scaling import N_MOVES, Scaling, hand_columns
@@ -62,19 +62,28 @@ class GlobalIsotropy:
 
 
 def trace_isotropy(
-    mechanism: FormulaMechanism, scaling: Scaling, *, has_hand_axes: bool = True, branch: str | None = None
+    mechanism: FormulaMechanism,
+    scaling: Scaling,
+    *,
+    has_hand_axes: bool = True,
+    has_limits: bool = False,
+    branch: str | None = None,
 ) -> Program:
     """The program with output "sigma": least and greatest singular value of S_J G S_T^-1 (velocity form: S_J G S_T).
 
     Args:
-        mechanism: whose formulas are traced; legal where these are, joint limits are not asked.
+        mechanism: whose formulas are traced; legal where these are.
         scaling: of motors and hand.
         has_hand_axes: G counts velocities in the hand's own axes (as Stocco et al. do), else in the base's.
+        has_limits: the joint limits are asked as well.
         branch: working mode.
     """
 
     def formula(pose: Sequence[Number], _: Sequence[Number], require: Require) -> dict[str, Any]:
         state = mechanism.solve_state(tuple(pose), mechanism.read_branch(branch), require)
+        if has_limits:
+            for joint, value in zip(mechanism.joints, mechanism.joint_values(state), strict=True):
+                require(fmin(value - joint.lower, joint.upper - value) + LIMIT_SLACK, f"{joint.name} within its limits")
         rows = [tuple(row)[: hand_columns(mechanism)] for row in mechanism.rate_rows(state)]
         if has_hand_axes:
             rows = _in_hand_axes(mechanism, pose, rows)

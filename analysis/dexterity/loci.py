@@ -1,8 +1,9 @@
 """Curves on which a planar mechanism is singular, for those that state them.
 
-A mechanism states its curves in a module `loci` beside its own: functions whose names end in `_locus`, that take its
-parameters, a choice of +1 or -1, an angle [rad], and `require` if a curve exists only at some angles. The choice is
-called `side` (of an arm) on serial loci, `sheet` on parallel ones. A mechanism outside the catalogue may do the same.
+A mechanism states its curves in its own module, or in a module `loci` beside it: functions whose names end in `_locus`,
+that take its parameters, a choice of +1 or -1, an angle [rad], and `require` if a curve exists only at some angles. The
+choice is called `side` (of an arm) on serial loci, `sheet` on parallel ones. A mechanism outside the catalogue may do
+the same.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 import importlib
 import importlib.util
 import inspect
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -51,13 +53,19 @@ def compute_loci(mechanism: Mechanism, n: int = 720) -> tuple[Locus, ...]:
 
 
 def _stated(mechanism: Mechanism) -> list[tuple[str, Callable[..., Any]]]:
-    package = type(mechanism).__module__.rpartition(".")[0]
-    name = f"{package}.loci"
-    if not package or importlib.util.find_spec(name) is None:
-        return []
-    module = importlib.import_module(name)
-    found = inspect.getmembers(module, inspect.isfunction)
-    return [(key.removesuffix("_locus"), f) for key, f in found if key.endswith("_locus") and f.__module__ == name]
+    """Formulas of the mechanism's own module and of `loci` beside it, which only a package can hold."""
+    own = type(mechanism).__module__
+    package = own.rpartition(".")[0]
+    names = [own]
+    if hasattr(sys.modules.get(package), "__path__") and importlib.util.find_spec(f"{package}.loci") is not None:
+        names.append(f"{package}.loci")
+    found: list[tuple[str, Callable[..., Any]]] = []
+    for name in names:
+        module = sys.modules.get(name) or importlib.import_module(name)
+        for key, function in inspect.getmembers(module, inspect.isfunction):
+            if key.endswith("_locus") and function.__module__ == name:
+                found.append((key.removesuffix("_locus"), function))
+    return found
 
 
 def _locus(name: str, function: Callable[..., Any], choice: float, parameters: Any, n: int) -> Locus:

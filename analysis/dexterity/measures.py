@@ -35,7 +35,7 @@ class Measures:
         parallel_margin: least singular value of W; 0 at a parallel singularity, 1 for lines all square to each other.
         determinant: of W, signed if there are as many motors as coordinates, else the root of det W^T W. Its sign is
             the assembly mode; it changes where the parallel singularity is crossed.
-        serial_margin: least lever [mm/rad]; 0 at a toggle.
+        serial_margin: least lever [mm/rad, of a slide mm/mm]; 0 at a toggle.
     """
 
     condition: Array
@@ -82,7 +82,7 @@ def measure_jacobians(G: Array, length: float) -> Measures:
         speeds = 1.0 / np.maximum(S, _TINY)
         condition = S[:, 0] / np.maximum(S[:, -1], _TINY)
         manipulability = np.prod(speeds, axis=-1)
-    determinant, parallel, levers = split_singularities(G)
+    W, levers = unit_lines(G)
     return Measures(
         condition=condition,
         condition_position=_conditions(rows[:, :N_MOVES]),
@@ -91,26 +91,29 @@ def measure_jacobians(G: Array, length: float) -> Measures:
         manipulability=manipulability,
         slowest=speeds[:, 0],
         fastest=speeds[:, -1],
-        parallel_margin=parallel,
-        determinant=determinant,
+        parallel_margin=np.linalg.svd(W, compute_uv=False)[:, -1],
+        determinant=compute_determinants(W),
         serial_margin=np.min(levers, axis=-1),
     )
 
 
-def split_singularities(G: Array) -> tuple[Array, Array, Array]:
-    """Determinant and least singular value of W, and the levers in D [mm/rad], of scaled G, shape (n, m, k).
+def unit_lines(G: Array) -> tuple[Array, Array]:
+    """W, rows of length one, and the levers in D [mm/rad], of scaled G, shape (n, m, k).
 
-    The lever of a motor that does not move the hand at all (a grip's) is infinite, and its row does not count in W.
+    The lever of a motor that moves the hand in no pose (a grip's) is infinite, and W has no row for it.
     """
     norms = np.linalg.norm(G, axis=-1)
     W = G / np.where(norms > 0.0, norms, 1.0)[..., None]
-    moves = np.any(norms > 0.0, axis=0)
-    W = W[:, moves]
-    square = W.shape[1] == W.shape[2]
-    determinant = np.linalg.det(W) if square else np.sqrt(np.maximum(np.linalg.det(np.swapaxes(W, 1, 2) @ W), 0.0))
     with np.errstate(divide="ignore"):
         levers = np.where(norms > 0.0, 1.0 / norms, np.inf)
-    return determinant, np.linalg.svd(W, compute_uv=False)[:, W.shape[2] - 1], levers
+    return W[:, np.any(norms > 0.0, axis=0)], levers
+
+
+def compute_determinants(W: Array) -> Array:
+    """The determinant of W where it is square, else the root of det W^T W, which has no sign, shape (n,)."""
+    if W.shape[1] == W.shape[2]:
+        return np.linalg.det(W)
+    return np.sqrt(np.maximum(np.linalg.det(np.swapaxes(W, 1, 2) @ W), 0.0))
 
 
 def _conditions(rows: Array) -> Array:

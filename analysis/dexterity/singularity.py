@@ -2,7 +2,8 @@
 
 Rays leave the pose in all directions of the task. On each the determinant of the motors' lines is watched: where it
 changes its sign the parallel singularity, and with it the border of the assembly mode, has been crossed. Where a lever
-runs out the serial singularity is met, which is the end of a motor's reach (a toggle).
+runs out the serial singularity is met, which is the end of a motor's reach (a toggle). The first event ends a ray: what
+lies behind it belongs to another assembly, or to none.
 """
 
 from __future__ import annotations
@@ -14,14 +15,17 @@ import numpy as np
 
 from linkwright.designs.language.mechanism import Mechanism
 
-from .measures import split_singularities
+from .measures import compute_determinants, unit_lines
 from .scaling import compute_hand_jacobian, with_length
 
 Array = np.ndarray
 
 #: A lever below this [mm/rad] is none: beyond its reach a leg's formulas keep it at rounding of zero.
 _NO_LEVER = 1e-4
-_N_STEPS, _N_RAYS, _N_HALVINGS, _N_ROUNDS = 60, 500, 40, 12
+#: Rays, steps along each; parts into which the step with the event is cut, and how often (to 1e-12 of the step).
+_N_RAYS, _N_STEPS, _N_PARTS, _N_CUTS = 500, 60, 32, 8
+#: Rounds of rays near the best one, ever nearer, and rays a round.
+_N_ROUNDS, _N_NEAR = 10, 24
 
 
 class Kind(StrEnum):
@@ -52,7 +56,9 @@ def find_nearest_singularities(
 ) -> tuple[NearestSingularity, ...]:
     """The nearest singular pose of each kind, if there is any within a distance.
 
-    Joint limits and safety margins are not asked: they are there to keep clear of these poses.
+    Joint limits and safety margins are not asked: they are there to keep clear of these poses. With more motors than
+    coordinates the determinant has no sign to change, and only serial singularities are found: the other kind is then
+    no border but a pose here and there, if any.
 
     Args:
         mechanism: measured.
@@ -66,18 +72,16 @@ def find_nearest_singularities(
     directions = _directions(len(look.pose), rng)
     found = []
     for kind in Kind:
-        distances = look.first_events(directions, kind, within)
-        best = int(np.argmin(distances))
-        if not np.isfinite(distances[best]):
+        best, distance = look.first_event(directions, kind, within)
+        if not np.isfinite(distance):
             continue
-        direction, distance = directions[best], float(distances[best])
+        direction = directions[best]
         for k in range(_N_ROUNDS if len(look.pose) > 1 else 0):
-            near = direction + rng.normal(size=(40, len(direction))) * 0.3 * 0.6**k
+            near = direction + rng.normal(size=(_N_NEAR, len(direction))) * 0.3 * 0.6**k
             near /= np.linalg.norm(near, axis=1, keepdims=True)
-            closer = look.first_events(near, kind, distance)
-            i = int(np.argmin(closer))
-            if closer[i] < distance:
-                direction, distance = near[i], float(closer[i])
+            i, closer = look.first_event(near, kind, distance)
+            if closer < distance:
+                direction, distance = near[i], closer
         found.append(NearestSingularity(kind=kind, pose=look.at(direction[None], distance)[0], distance=distance))
     return tuple(found)
 
@@ -98,6 +102,7 @@ class _Rays:
     def __init__(self, mechanism: Mechanism, pose: Array, length: float) -> None:
         self.mechanism, self.pose, self.length = mechanism, pose, length
         self.scale = np.array([1.0 / length if c.unit == "deg" else 1.0 for c in mechanism.task])
+        self.sign = np.sign(self.watched(pose[None])[0][0])
 
     def at(self, directions: Array, distances: float | Array) -> Array:
         """Poses at distances [mm] along directions, shape (n, n_task)."""
@@ -108,30 +113,37 @@ class _Rays:
         with np.errstate(all="ignore"):
             G = with_length(compute_hand_jacobian(self.mechanism, poses), self.length)
         finite = np.all(np.isfinite(G), axis=(1, 2))
-        determinant, _, levers = split_singularities(np.where(finite[:, None, None], G, 0.0))
-        return determinant, finite & (np.min(levers, axis=-1) > _NO_LEVER)
+        W, levers = unit_lines(np.where(finite[:, None, None], G, 0.0))
+        return compute_determinants(W), finite & (np.min(levers, axis=-1) > _NO_LEVER)
 
-    def first_events(self, directions: Array, kind: Kind, within: float) -> Array:
-        """Distance of the first event of a kind on each ray [mm], infinite where none or another comes first."""
+    def first_event(self, directions: Array, kind: Kind, within: float) -> tuple[int, float]:
+        """The ray that meets an event of a kind nearest, and how far [mm]; infinitely far if none meets one first."""
         n, steps = len(directions), within * np.arange(_N_STEPS + 1) / _N_STEPS
-        poses = self.at(np.repeat(directions, len(steps), axis=0), np.tile(steps, n))
-        determinant, has_levers = (a.reshape(n, -1) for a in self.watched(poses))
-        sign = np.sign(determinant[:, :1])
-        crossed = (np.sign(determinant) != sign) & has_levers
-        event, other = (crossed, ~has_levers) if kind is Kind.PARALLEL else (~has_levers, crossed)
+        event, other = self._events(directions, np.tile(steps, (n, 1)), kind)
         first, before = _first(event), _first(other)
-        rays = np.flatnonzero((first < before) & (first > 0))
-        out = np.full(n, np.inf)
-        if len(rays) == 0:
-            return out
-        low, high = steps[first[rays] - 1], steps[first[rays]]
-        for _ in range(_N_HALVINGS):
-            middle = 0.5 * (low + high)
-            determinant, has_levers = self.watched(self.at(directions[rays], middle))
-            is_past = ~has_levers if kind is Kind.SERIAL else np.sign(determinant) != sign[rays, 0]
-            low, high = np.where(is_past, low, middle), np.where(is_past, middle, high)
-        out[rays] = high
-        return out
+        first = np.where((first < before) & (first > 0), first, len(steps))
+        nearest = int(np.min(first))
+        if nearest == len(steps):
+            return 0, np.inf
+        # Only rays that meet it in the same step can be nearest; each is cut finer and finer around its event.
+        rays = np.flatnonzero(first == nearest)
+        low, high = np.full(len(rays), steps[nearest - 1]), np.full(len(rays), steps[nearest])
+        for _ in range(_N_CUTS):
+            inside = low[:, None] + (high - low)[:, None] * np.arange(1, _N_PARTS) / _N_PARTS
+            event, _ = self._events(directions[rays], inside, kind)
+            at = _first(event)[:, None]
+            edges = np.concatenate([low[:, None], inside, high[:, None]], axis=1)
+            low, high = (np.take_along_axis(edges, at + k, axis=1)[:, 0] for k in (0, 1))
+        best = int(np.argmin(high))
+        return int(rays[best]), float(high[best])
+
+    def _events(self, directions: Array, distances: Array, kind: Kind) -> tuple[Array, Array]:
+        """Whether an event of the kind, and one of the other kind, has happened at distances (n, k) along rays."""
+        n, k = distances.shape
+        poses = self.at(np.repeat(directions, k, axis=0), distances.ravel())
+        determinant, has_levers = (a.reshape(n, k) for a in self.watched(poses))
+        crossed = (np.sign(determinant) != self.sign) & has_levers
+        return (crossed, ~has_levers) if kind is Kind.PARALLEL else (~has_levers, crossed)
 
 
 def _first(events: Array) -> Array:

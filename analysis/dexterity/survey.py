@@ -1,4 +1,4 @@
-"""Dexterity over a sampled workspace: least, median and greatest of every measure, and where; margins; dextrous volume."""
+"""Dexterity over a sampled workspace: ends and middle of every measure, and where; margins; the dextrous positions."""
 
 from __future__ import annotations
 

@@ -16,6 +16,7 @@ from .graph import LOGICAL, Node, order_of
 from .loops import Loop
 from .passes import prepared
 from .program import Program
+from .schedule import scheduled
 
 #: Lanes of a block.
 WIDTH = 8
@@ -35,20 +36,23 @@ class KernelText:
     Attributes:
         text: LLVM IR.
         n_results: numbers of all outputs; margins follow them, then the status.
+        n_margins: margins in a row; 0 where they only make the status.
         row_length: doubles a row, a multiple of eight.
     """
 
     text: str
     n_results: int
+    n_margins: int
     row_length: int
 
 
-def emit_llvm(program: Program, *, is_strict: bool = False) -> KernelText:
+def emit_llvm(program: Program, *, is_strict: bool = False, has_margins: bool = True) -> KernelText:
     """The kernel of a program.
 
     Args:
         program: traced and not yet lowered.
         is_strict: every operation rounds as IEEE 754 says, with no fused or exchanged operation.
+        has_margins: margins are written; without it only the status tells of them.
     """
     program = prepared(program, is_polynomial=True)
     printer = _Printer("" if is_strict else _FLAGS)
@@ -58,16 +62,18 @@ def emit_llvm(program: Program, *, is_strict: bool = False) -> KernelText:
         printer.node(node, printer.before)
     body = printer.body
     total = _check_of_inputs(printer, len(program.inputs))
-    order = order_of(margins)
-    for node in [*order, *order_of(results, order)]:
-        if node not in printer.early:
-            printer.node(node, body)
-    length = -(-(len(results) + len(margins) + 1) // WIDTH) * WIDTH
+    for node in scheduled([*margins, *results], printer.early):
+        printer.node(node, body)
+    n_margins = len(margins) if has_margins else 0
+    length = -(-(len(results) + n_margins + 1) // WIDTH) * WIDTH
     for k, node in enumerate(results):
         body.append(f"  store {_V} {printer.name(node)}, ptr {_slot(printer, body, k)}, align 64")
-    _store_status(printer, results, margins, total)
+    _store_status(printer, results, margins, total, has_margins=has_margins)
     return KernelText(
-        text=_frame(printer, len(program.inputs), len(results), length), n_results=len(results), row_length=length
+        text=_frame(printer, len(program.inputs), len(results), length),
+        n_results=len(results),
+        n_margins=n_margins,
+        row_length=length,
     )
 
 
@@ -160,7 +166,7 @@ class _Printer:
         for name, start, end in zip(carried, starts, ends, strict=False):
             lines.append(f"  {name} = phi {_V} [ {start}, %{before} ], [ {end}, %{head}_body ]")
         lines.append(f"  {count} = phi i64 [ 0, %{before} ], [ {more}, %{head}_body ]")
-        asked = order_of([again])
+        asked = scheduled([again])
         for inner in asked:
             self.node(inner, lines)
         bits = self.line(lines, f"bitcast {_M} {self.name(again)} to i{WIDTH}")
@@ -168,7 +174,7 @@ class _Printer:
         left = self.line(lines, f"icmp ult i64 {count}, {loop.n_most}")
         go = self.line(lines, f"and i1 {wanted}, {left}")
         lines += [f"  br i1 {go}, label %{head}_body, label %{head}_end", f"{head}_body:"]
-        for inner in order_of(following, asked):
+        for inner in scheduled(following, asked):
             self.node(inner, lines)
         for end, inner, name in zip(ends, following, carried, strict=True):
             lines.append(f"  {end} = select {_M} {self.name(again)}, {_V} {self.name(inner)}, {_V} {name}")
@@ -186,7 +192,9 @@ def _check_of_inputs(printer: _Printer, n: int) -> str:
     return total or "zeroinitializer"
 
 
-def _store_status(printer: _Printer, results: list[Node], margins: list[Node], total: str) -> None:
+def _store_status(
+    printer: _Printer, results: list[Node], margins: list[Node], total: str, *, has_margins: bool
+) -> None:
     """Margins (-inf where not finite), the status, and whether all of the block is legal."""
     body, line = printer.body, printer.line
     infinity, never = (f"<{', '.join([f'double {v}'] * WIDTH)}>" for v in ("0x7FF0000000000000", "0xFFF0000000000000"))
@@ -205,12 +213,13 @@ def _store_status(printer: _Printer, results: list[Node], margins: list[Node], t
         size = line(body, f"call {_V} @llvm.fabs.v{WIDTH}f64({_V} {shifted})")
         is_finite = line(body, f"fcmp olt {_V} {size}, {infinity}")
         kept = line(body, f"select {_M} {is_finite}, {_V} {shifted}, {_V} {never}")
-        body.append(f"  store {_V} {kept}, ptr {_slot(printer, body, len(results) + k)}, align 64")
+        if has_margins:
+            body.append(f"  store {_V} {kept}, ptr {_slot(printer, body, len(results) + k)}, align 64")
         is_legal = line(body, f"fcmp oge {_V} {kept}, zeroinitializer")
         status = line(body, f"select {_M} {is_legal}, {_V} {status}, {_V} {codes[k + 2]}")
     is_finite = line(body, f"fcmp ord {_V} {total}, {total}")
     status = line(body, f"select {_M} {is_finite}, {_V} {status}, {_V} {codes[0]}")
-    body.append(f"  store {_V} {status}, ptr {_slot(printer, body, len(results) + len(margins))}, align 64")
+    body.append(f"  store {_V} {status}, ptr {_slot(printer, body, len(results) + has_margins * len(margins))}, align 64")
     is_wrong = line(body, f"fcmp une {_V} {status}, zeroinitializer")
     bits = line(body, f"bitcast {_M} {is_wrong} to i{WIDTH}")
     body.append(f"  %is_clean = icmp eq i{WIDTH} {bits}, 0")

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import time
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from itertools import accumulate
 from typing import Any
 
 import numpy as np
@@ -51,11 +53,14 @@ class Kernel:
         seconds: what printing, compiling and loading took.
     """
 
-    def __init__(self, program: Program, *, is_strict: bool = False) -> None:
+    def __init__(self, program: Program, *, is_strict: bool = False, has_margins: bool = True) -> None:
         start = time.perf_counter()
         self.program = program
-        printed = emit_llvm(program, is_strict=is_strict)
-        self._n_results, self._length = printed.n_results, printed.row_length
+        printed = emit_llvm(program, is_strict=is_strict, has_margins=has_margins)
+        self._n_margins, self._length = printed.n_margins, printed.row_length
+        self._n_inputs, self._n_parameters = len(program.inputs), len(program.parameters)
+        #: Columns at which the outputs begin, and the end of the last.
+        self._edges = list(accumulate((len(o.nodes) for o in program.outputs), initial=0))
         self._function, self._engine, self.is_cached = load_kernel(printed.text)
         self.seconds = time.perf_counter() - start
 
@@ -79,57 +84,69 @@ class Kernel:
             n_threads: at most so many threads; None for as many as there are cores.
             into: a `buffer` of this kernel for as many poses, which the results then are views of.
         """
-        rows = np.ascontiguousarray(poses, dtype=float)
-        n_inputs = len(self.program.inputs)
-        if rows.ndim != 2 or rows.shape[1] != n_inputs:
-            raise ValueError(f"{self.program.name}: poses have shape {rows.shape}, needed (n, {n_inputs})")
-        numbers = np.ascontiguousarray(parameters, dtype=float)
-        if numbers.shape != (len(self.program.parameters),):
-            raise ValueError(
-                f"{self.program.name}: {numbers.size} parameters given, needed {len(self.program.parameters)}"
-            )
+        rows, numbers = _as_rows(poses), _as_rows(parameters)
+        if rows.ndim != 2 or rows.shape[1] != self._n_inputs:
+            raise ValueError(f"{self.program.name}: poses have shape {rows.shape}, needed (n, {self._n_inputs})")
+        if numbers.shape != (self._n_parameters,):
+            raise ValueError(f"{self.program.name}: {numbers.size} parameters given, needed {self._n_parameters}")
         n = len(rows)
         out = self.buffer(n) if into is None else into
-        if out.shape != (n, self._length) or (n and out.ctypes.data % (8 * WIDTH)):
+        if out.shape != (n, self._length) or (n and _address(out) % (8 * WIDTH)):
             raise ValueError(f"{self.program.name}: `into` must be buffer({n}) of this kernel")
         whole = n // WIDTH * WIDTH
-        self._run(rows[:whole], numbers, out[:whole], n_threads or os.cpu_count() or 1)
+        self._run(rows, numbers, out, whole // WIDTH, n_threads or os.cpu_count() or 1)
         if whole < n:
-            padded, last = np.zeros((WIDTH, n_inputs)), _aligned(WIDTH, self._length)
+            padded, last = np.zeros((WIDTH, self._n_inputs)), _aligned(WIDTH, self._length)
             padded[: n - whole] = rows[whole:]
-            self._run(padded, numbers, last, 1)
+            self._run(padded, numbers, last, 1, 1)
             out[whole:] = last[: n - whole]
         return self._read(out)
 
-    def _run(self, rows: Array, numbers: Array, out: Array, n_threads: int) -> None:
-        n_blocks = len(rows) // WIDTH
-        n_parts = max(1, min(n_threads, len(rows) // _WORTH_A_THREAD))
-        edges = [WIDTH * (n_blocks * k // n_parts) for k in range(n_parts + 1)]
+    def _run(self, rows: Array, numbers: Array, out: Array, n_blocks: int, n_threads: int) -> None:
+        n_parts = max(1, min(n_threads, n_blocks * WIDTH // _WORTH_A_THREAD))
+        source, constants, target = _address(rows), _address(numbers), _address(out)
+        if n_parts == 1:
+            if n_blocks:
+                self._function(source, constants, target, n_blocks)
+            return
 
         def part(k: int) -> None:
-            first, last = edges[k], edges[k + 1]
-            if last > first:
-                addresses = rows[first:].ctypes.data, numbers.ctypes.data, out[first:].ctypes.data
-                self._function(*addresses, (last - first) // WIDTH)
+            first, last = n_blocks * k // n_parts, n_blocks * (k + 1) // n_parts
+            here, there = (8 * WIDTH * first * width for width in (self._n_inputs, self._length))
+            self._function(source + here, constants, target + there, last - first)
 
-        if n_parts == 1:
-            part(0)
-        else:
-            with ThreadPoolExecutor(n_parts) as pool:
-                list(pool.map(part, range(n_parts)))
+        with ThreadPoolExecutor(n_parts) as pool:
+            list(pool.map(part, range(n_parts)))
 
     def _read(self, out: Array) -> KernelResult:
-        outputs: dict[str, Any] = {}
-        at = 0
-        for output in self.program.outputs:
-            outputs[output.name] = out[:, at : at + len(output.nodes)].reshape(len(out), *output.shape)
-            at += len(output.nodes)
-        n_margins = len(self.program.margins)
-        return KernelResult(outputs=outputs, margins=out[:, at : at + n_margins], status=out[:, at + n_margins])
+        outputs = {
+            output.name: out[:, first:last].reshape(len(out), *output.shape)
+            for output, first, last in zip(self.program.outputs, self._edges, self._edges[1:], strict=False)
+        }
+        at = self._edges[-1]
+        return KernelResult(
+            outputs=outputs, margins=out[:, at : at + self._n_margins], status=out[:, at + self._n_margins]
+        )
+
+
+def _as_rows(numbers: Any) -> Array:
+    """The same array if it is contiguous float64 already."""
+    if type(numbers) is np.ndarray and numbers.dtype == np.float64 and numbers.flags.c_contiguous:
+        return numbers
+    return np.ascontiguousarray(numbers, dtype=float)
+
+
+def _address(array: Array) -> int:
+    """Where the numbers lie; for arrays that can be written, at a sixth of the price of `array.ctypes.data`."""
+    if not array.size:
+        return 0
+    if array.flags.writeable and array.flags.c_contiguous:
+        return ctypes.addressof(ctypes.c_char.from_buffer(array))
+    return int(array.ctypes.data)
 
 
 def _aligned(n: int, length: int) -> Array:
     """Rows that begin on cache lines: a vector stored across two of them costs half the kernel's time again."""
     room = np.empty(n * length + WIDTH)
-    skip = -(room.ctypes.data // 8) % WIDTH
+    skip = -(_address(room) // 8) % WIDTH
     return room[skip : skip + n * length].reshape(n, length)

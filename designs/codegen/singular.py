@@ -9,9 +9,10 @@ grows with it (see `singular_values`).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ..language.vocabulary import Number, fabs, fmax, fmin, sqrt, where
+from .graph import Node
 from .loops import repeat_while
 from .program import Output, Program
 
@@ -25,7 +26,7 @@ MOST_STEPS = 60
 SHORTER = 1.0 - 2e-7
 #: Error of an eigenvalue that cannot be improved, in parts of the largest.
 ROUNDING = 4e-15
-_TINY = 1e-300
+_TINY, _HUGE = 1e-300, 1e300
 
 
 class Tridiagonal(NamedTuple):
@@ -46,7 +47,7 @@ def tridiagonal(matrix: list[list[Number]]) -> Tridiagonal:
     n = len(matrix)
     a = [list(row) for row in matrix]
     squares: list[Number] = []
-    for k in range(n - 2):
+    for k in range(n - 3):
         x = [a[i][k] for i in range(k + 1, n)]
         rest = _dot(x[1:], x[1:])
         length2 = x[0] * x[0] + rest
@@ -67,9 +68,22 @@ def tridiagonal(matrix: list[list[Number]]) -> Tridiagonal:
         for i in range(m):
             for j in range(i + 1):
                 a[k + 1 + i][k + 1 + j] = a[k + 1 + i][k + 1 + j] - v[i] * w[j] - w[i] * v[j]
+    if n > 2:
+        _turn_last(a, squares)
     if n > 1:
         squares.append(a[n - 1][n - 2] * a[n - 1][n - 2])
     return Tridiagonal([a[i][i] for i in range(n)], squares)
+
+
+def _turn_last(a: list[list[Number]], squares: list[Number]) -> None:
+    """The last reflection turns two axes, and only squares of what is beside the diagonal are wanted: no root."""
+    *_, (*_, x, first), (*_, y, beside, last) = a
+    length2 = x * x + y * y
+    squares.append(length2)
+    across, apart = 2.0 * beside, last - first
+    part = y / fmax(length2, _TINY)
+    moved = part * (across * x + apart * y)
+    a[-2][-1], a[-1][-2:] = first + moved, [beside + part * (apart * x - across * y), last - moved]
 
 
 def extreme_eigenvalues(matrix: list[list[Number]]) -> tuple[Number, Number]:
@@ -93,11 +107,11 @@ def extreme_eigenvalues(matrix: list[list[Number]]) -> tuple[Number, Number]:
         high = high - _step(n, _horner(coefficients, high))
     fixed = [*t.diagonal, *t.squares]
     first = _returned(t, low, high, trace)
-    # Simple eigenvalues are there after the second step; clusters, where the steps shrink slowly, go on.
+    # Simple eigenvalues are there after the first step; clusters, where the steps shrink slowly, go on.
     low, _, high, _ = repeat_while(
         _fine_step(first, fixed),
         fixed,
-        lambda carried, fixed: (_is_unsettled(n, carried), _fine_step(carried, fixed)),
+        lambda carried, fixed: (_is_unsettled(carried), _fine_step(carried, fixed)),
         MOST_STEPS,
     )
     return fmax(low, 0.0), high
@@ -124,26 +138,40 @@ def _returned(t: Tridiagonal, low: Number, high: Number, trace: Number) -> list[
         is_above = is_above & (at_high[k][0] > 0.0)
     carried: list[Number] = []
     for x, at, is_outside, bound in ((low, at_low, is_below, 0.0), (high, at_high, is_above, trace)):
-        step = SHORTER * _step(n, at[-1])
-        carried += [where(is_outside, x - step, bound), trace]
+        nearer, doubt = _nearer(n, x, at[-1])
+        carried += [where(is_outside, nearer, bound), where(is_outside, doubt, trace)]
     return carried
 
 
 def _fine_step(carried: list[Number], fixed: list[Number]) -> list[Number]:
-    """One step at either end: root, and size of the step."""
+    """One step at either end: root, and how far it may still be."""
     n = (len(fixed) + 1) // 2
     t = Tridiagonal(fixed[:n], fixed[n:])
     following: list[Number] = []
     for x in carried[::2]:
-        step = SHORTER * _step(n, _minors(t, x)[-1])
-        following += [x - step, fabs(step)]
+        following += _nearer(n, x, _minors(t, x)[-1])
     return following
 
 
-def _is_unsettled(n: int, carried: list[Number]) -> Number:
-    """A polynomial of degree n has a root within n |p/p'|, which is less than n steps: no other test is safe."""
-    low, low_step, high, high_step = carried
-    return (n * low_step > 1e-13 * low + ROUNDING * high) | (n * high_step > ROUNDING * high)
+def _nearer(n: int, x: Number, at: tuple[Number, Number, Number]) -> tuple[Number, Number]:
+    """The next point, and a bound for what is left.
+
+    With s1, s2 the sums of 1/(root - x) and of its square over all roots, the nearest root is within s1/s2, a mean
+    of their distances with weights; of that the step is gone. It is within n steps too, which serves where the
+    squares vanish.
+    """
+    p, d, h = at
+    step = SHORTER * _step(n, at)
+    squares = d * d - 2.0 * (p * h)
+    left = fabs(fabs(p * d) / where(squares > _TINY, squares, 1.0) - fabs(step))
+    most = n * fabs(step)
+    return x - step, where((squares > _TINY) & (left < most), left, most)
+
+
+def _is_unsettled(carried: list[Number]) -> Number:
+    """An end may be farther off than rounding."""
+    low, low_doubt, high, high_doubt = carried
+    return (low_doubt > 1e-14 * low + ROUNDING * high) | (high_doubt > ROUNDING * high)
 
 
 def characteristic(t: Tridiagonal) -> list[Number]:
@@ -212,27 +240,35 @@ def singular_values(rows: Rows) -> tuple[Number, Number]:
     return sqrt(low), sqrt(high)
 
 
-def least_pivot(rows: Rows, threshold: Number) -> Number:
-    """Positive exactly where the smallest singular value is above the threshold; no root is taken.
+def exceeds(rows: Rows, threshold: Number, shares: Sequence[Number] | None = None) -> Number:
+    """+1 where the smallest singular value is above the threshold, else -1; no root is taken.
 
-    It is the least pivot of L D L^T of the Gram matrix less threshold^2 on its diagonal, finite always.
+    It is so where all pivots of L D L^T of the Gram matrix less threshold^2 on its diagonal are positive. A factor
+    of a whole row may be left out, since it changes no pivot's sign; it divides the threshold instead.
+
+    Args:
+        rows: the matrix.
+        threshold: to compare with.
+        shares: row i of the matrix is `rows[i]` / shares[i]; only for a matrix with no more rows than columns.
     """
     a = gram(rows)
     n = len(a)
-    shift = threshold * threshold
-    least: Number = 0.0
+    trace = _dot([a[k][k] for k in range(n)], [1.0] * n)
+    above: Any = True
     for k in range(n):
-        a[k][k] = a[k][k] - shift
+        shift = threshold if shares is None else threshold * shares[k]
+        a[k][k] = a[k][k] - shift * shift
     for k in range(n):
-        pivot = a[k][k]
-        least = pivot if k == 0 else fmin(least, pivot)
-        # Behind a pivot that is not positive nothing matters any more, but it must stay finite.
-        inverse = 1.0 / where(pivot > 0.0, pivot, 1.0)
+        is_positive = a[k][k] > 0.0
+        above = is_positive if k == 0 else above & is_positive
+        # Behind a pivot that is not positive nothing matters any more.
+        inverse = 1.0 / where(is_positive, a[k][k], 1.0) if k < n - 1 else 1.0
         for i in range(k + 1, n):
             factor = a[i][k] * inverse
             for j in range(k + 1, i + 1):
                 a[i][j] = a[i][j] - factor * a[j][k]
-    return least
+    # What is not finite must not pass for a decision.
+    return where(trace < _HUGE, where(above, 1.0, -1.0), trace)
 
 
 def with_singular_values(
@@ -247,11 +283,47 @@ def with_singular_values(
 def with_threshold(
     program: Program, column_scale: Sequence[float] | None = None, row_scale: Sequence[float] | None = None
 ) -> Program:
-    """The program with a parameter "threshold" and an output "above": > 0 where the least singular value exceeds it."""
+    """The program with a parameter "threshold" and an output "above": +1 where the least singular value exceeds it."""
     graph = program.graph
     threshold = graph.parameter(len(program.parameters))
-    above = graph.lift(least_pivot(_scaled(program, column_scale, row_scale), threshold))
-    return program.add(Output(name="above", shape=(), nodes=(above,)), parameters=("threshold",))
+    rows = _scaled(program, column_scale, row_scale)
+    if len(rows) <= len(rows[0]):
+        parted = [_parted(row) for row in rows]
+        above = exceeds([row for row, _ in parted], threshold, [share for _, share in parted])
+    else:
+        above = exceeds(rows, threshold)
+    return program.add(Output(name="above", shape=(), nodes=(graph.lift(above),)), parameters=("threshold",))
+
+
+def _parted(row: Sequence[Node]) -> tuple[list[Node], Node]:
+    """A row without a factor that all its entries have, and the inverse of that factor (1 if there is none)."""
+    graph = row[0].graph
+    split = [_factors(node) for node in row if not node.is_const(0.0)]
+    common = [f for f in (split[0] if split else ()) if not f.is_const() and all(f in other for other in split)]
+    if not common:
+        return list(row), graph.const(1.0)
+    factor = common[0]
+    is_inverse = factor.op == "div" and factor.args[0].is_const()
+    share = factor.args[1] * (1.0 / factor.args[0].value) if is_inverse else 1.0 / factor
+    return [_without(node, factor) for node in row], share
+
+
+def _factors(node: Node) -> tuple[Node, ...]:
+    if node.op == "mul":
+        return _factors(node.args[0]) + _factors(node.args[1])
+    return _factors(node.args[0]) if node.op == "neg" else (node,)
+
+
+def _without(node: Node, factor: Node) -> Node:
+    """The product without this factor of it."""
+    if node is factor:
+        return node.graph.const(1.0)
+    if node.op == "neg":
+        return -_without(node.args[0], factor)
+    if node.op == "mul":
+        left, right = node.args
+        return _without(left, factor) * right if factor in _factors(left) else left * _without(right, factor)
+    return node
 
 
 def _scaled(program: Program, column_scale: Sequence[float] | None, row_scale: Sequence[float] | None) -> Rows:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from linkwright.designs.codegen.kernel import Kernel
-from linkwright.designs.codegen.singular import least_pivot, singular_values, with_singular_values, with_threshold
+from linkwright.designs.codegen.singular import exceeds, singular_values, with_singular_values, with_threshold
 from linkwright.designs.codegen.trace import trace_formula, trace_mechanism
 
 SHAPES = [(6, 6), (6, 5), (5, 6), (3, 3), (2, 2), (3, 6), (1, 3)]
@@ -73,7 +73,7 @@ def test_a_pose_is_answered_alike_in_any_company(rng):
 def test_the_threshold_form_decides_like_the_svd(shape, rng):
     A = rng.normal(size=(4000, *shape))
     low = extremes(A)[:, 0]
-    kernel = kernel_of(shape, least_pivot, ["t"])
+    kernel = kernel_of(shape, exceeds, ["t"])
     for t in np.quantile(low, [0.05, 0.5, 0.95]):
         result = kernel(A.reshape(len(A), -1), [t])
         assert result.is_legal.all()

@@ -160,3 +160,26 @@ def test_its_findings_and_manifest_are_readable_by_machines(released):
     assert manifest["design_hash"] == released.design.hash
     on_disk = {p.relative_to(released.folder).as_posix() for p in released.folder.rglob("*") if p.is_file()}
     assert {row["path"] for row in manifest["files"]} == on_disk - {"manifest.json"}
+
+
+def _self_intersections(path):
+    """Faces of a mesh file that cut through others, by a library that had no part in making it."""
+    import pymeshlab
+
+    meshes = pymeshlab.MeshSet()
+    meshes.load_new_mesh(str(path))
+    meshes.compute_selection_by_self_intersections_per_face()
+    return meshes.current_mesh().selected_face_number()
+
+
+def test_no_mesh_cuts_through_itself(released, tmp_path):
+    """What neither closedness nor winding shows: two closed shells in one file may overlap."""
+    import trimesh
+
+    files = sorted((released.folder / "mesh").glob("*.stl"))
+    assert len(files) > 30
+    assert [path.name for path in files if _self_intersections(path)] == []
+    one, other = trimesh.creation.box((10, 10, 10)), trimesh.creation.box((10, 10, 10))
+    bad = trimesh.util.concatenate([one, other.apply_translation((4.0, 3.0, 2.0))])
+    bad.export(tmp_path / "bad.stl")
+    assert _self_intersections(tmp_path / "bad.stl") > 0

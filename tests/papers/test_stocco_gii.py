@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from dataclasses import replace
 
 import numpy as np
@@ -89,18 +88,13 @@ def test_tables_7_and_8_come_out_on_all_poses(row):
     assert found.index == pytest.approx((0.089461, 0.182388, 0.234489, 0.261864)[row], abs=6e-7)
 
 
-def test_table_7_takes_less_than_a_second_once_compiled():
+def test_table_7_is_decided_by_a_far_corner_and_a_near_pose():
     p, poses = pen_numbers.STOCCO_TABLE_7, pen_poses(250.0)
     kernel = Kernel(
         trace_isotropy(HapticPen({"parameters": p}), Scaling(motors=(1.6, 1.0, 1.0, 1.6, 1.0, 1.0), hand=PEN_HAND))
     )
-    times = []
-    for _ in range(3):
-        start = time.perf_counter()
-        found = compute_global_isotropy(kernel, poses, n_threads=2)
-        times.append(time.perf_counter() - start)
-    assert min(times) < 1.0
-    # The deciding poses: the far corner tilted outwards, and a near pose; in centimetres 0.053567 over 0.228439.
+    found = compute_global_isotropy(kernel, poses, n_threads=2)
+    # In centimetres 0.053567 over 0.228439.
     assert found.pose_of_least[:3] == pytest.approx([80.0, 50.0, 300.0])
     assert found.pose_of_greatest[:3] == pytest.approx([40.0, 10.0, 200.0])
     assert (found.least * CM, found.greatest * CM) == pytest.approx((0.053567, 0.228439), abs=5e-7)
@@ -142,6 +136,17 @@ def test_table_5_comes_out_lower_than_printed():
     found = index_of(Inoue({"parameters": p}), scaling, platform_poses(0.0, 9))
     assert found.index == pytest.approx(0.213276, abs=6e-7)
     assert STOCCO_TABLE_5_GII - found.index > 1e-3
+
+
+def test_table_7_needs_the_scales_in_their_places():
+    """Torque scales exchanged, or S_T multiplied in the force form, give another index."""
+    pen, poses = HapticPen({"parameters": pen_numbers.STOCCO_TABLE_7}), pen_poses(250.0)
+    motors = (1.6, 1.0, 1.0, 1.6, 1.0, 1.0)
+    swapped = index_of(pen, Scaling(motors=motors, hand=(*PEN_HAND[:3], PEN_HAND[4], PEN_HAND[3])), poses)
+    assert swapped.index == pytest.approx(0.2187, abs=1e-4)
+    centimetres = tuple(np.array(pen_numbers.STOCCO_HAND_FORCE) * [CM, CM, CM, 1.0, 1.0])
+    multiplied = index_of(pen, Scaling(motors=motors, hand=centimetres, form=Form.VELOCITY), poses)
+    assert multiplied.index == pytest.approx(0.0212, abs=1e-4)
 
 
 def test_an_unreachable_pose_makes_the_index_zero():
