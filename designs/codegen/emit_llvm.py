@@ -24,6 +24,10 @@ WIDTH = 8
 _FLAGS = "nsz arcp contract"
 _V, _M = f"<{WIDTH} x double>", f"<{WIDTH} x i1>"
 
+_ZERO, _INF, _NEVER = (
+    f"<{', '.join([f'double {v}'] * WIDTH)}>" for v in ("0.0", "0x7FF0000000000000", "0xFFF0000000000000")
+)
+
 _BINARY = {"add": "fadd", "sub": "fsub", "mul": "fmul", "div": "fdiv"}
 _COMPARE = {"lt": "olt", "le": "ole", "eq": "oeq"}
 _UNARY = {"root": "sqrt", "fabs": "fabs", "floor": "floor"}
@@ -197,11 +201,9 @@ def _store_status(
 ) -> None:
     """Margins (-inf where not finite), the status, and whether all of the block is legal."""
     body, line = printer.body, printer.line
-    infinity, never = (f"<{', '.join([f'double {v}'] * WIDTH)}>" for v in ("0x7FF0000000000000", "0xFFF0000000000000"))
     chains = ["zeroinitializer"] * 4
-    zero = f"<{', '.join(['double 0.0'] * WIDTH)}>"
     for k, node in enumerate(results):
-        gone = line(body, f"fmul contract {_V} {printer.name(node)}, {zero}")
+        gone = line(body, f"fmul contract {_V} {printer.name(node)}, {_ZERO}")
         chains[k % 4] = line(body, f"fadd contract {_V} {chains[k % 4]}, {gone}")
     left, right = (line(body, f"fadd {_V} {chains[k]}, {chains[k + 1]}") for k in (0, 2))
     every = line(body, f"fadd {_V} {left}, {right}")
@@ -209,20 +211,32 @@ def _store_status(
     codes = [f"<{', '.join([f'double {_hex(float(k))}'] * WIDTH)}>" for k in range(-1, len(margins) + 1)]
     status = line(body, f"select {_M} {is_bad}, {_V} {codes[0]}, {_V} zeroinitializer")
     for k in reversed(range(len(margins))):
-        shifted = line(body, f"fadd {_V} {printer.name(margins[k])}, {total}")
-        size = line(body, f"call {_V} @llvm.fabs.v{WIDTH}f64({_V} {shifted})")
-        is_finite = line(body, f"fcmp olt {_V} {size}, {infinity}")
-        kept = line(body, f"select {_M} {is_finite}, {_V} {shifted}, {_V} {never}")
         if has_margins:
-            body.append(f"  store {_V} {kept}, ptr {_slot(printer, body, len(results) + k)}, align 64")
-        is_legal = line(body, f"fcmp oge {_V} {kept}, zeroinitializer")
+            is_legal = _kept_margin(printer, margins[k], total, len(results) + k)
+        else:
+            name = printer.name(margins[k])
+            above, below = (line(body, f"fcmp {c} {_V} {name}, {end}") for c, end in (("oge", _ZERO), ("olt", _INF)))
+            is_legal = line(body, f"and {_M} {above}, {below}")
         status = line(body, f"select {_M} {is_legal}, {_V} {status}, {_V} {codes[k + 2]}")
     is_finite = line(body, f"fcmp ord {_V} {total}, {total}")
     status = line(body, f"select {_M} {is_finite}, {_V} {status}, {_V} {codes[0]}")
-    body.append(f"  store {_V} {status}, ptr {_slot(printer, body, len(results) + has_margins * len(margins))}, align 64")
+    body.append(
+        f"  store {_V} {status}, ptr {_slot(printer, body, len(results) + has_margins * len(margins))}, align 64"
+    )
     is_wrong = line(body, f"fcmp une {_V} {status}, zeroinitializer")
     bits = line(body, f"bitcast {_M} {is_wrong} to i{WIDTH}")
     body.append(f"  %is_clean = icmp eq i{WIDTH} {bits}, 0")
+
+
+def _kept_margin(printer: _Printer, margin: Node, total: str, slot: int) -> str:
+    """Store a margin, -inf where it or an input is not finite; the mask of lanes where it is legal."""
+    body, line = printer.body, printer.line
+    shifted = line(body, f"fadd {_V} {printer.name(margin)}, {total}")
+    size = line(body, f"call {_V} @llvm.fabs.v{WIDTH}f64({_V} {shifted})")
+    is_finite = line(body, f"fcmp olt {_V} {size}, {_INF}")
+    kept = line(body, f"select {_M} {is_finite}, {_V} {shifted}, {_V} {_NEVER}")
+    body.append(f"  store {_V} {kept}, ptr {_slot(printer, body, slot)}, align 64")
+    return line(body, f"fcmp oge {_V} {kept}, zeroinitializer")
 
 
 def _slot(printer: _Printer, lines: list[str], k: int) -> str:

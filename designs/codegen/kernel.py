@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import math
 import os
 import time
 from collections.abc import Mapping, Sequence
@@ -25,18 +26,41 @@ _WORTH_A_THREAD = 16384
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KernelResult:
-    """Results of a batch of n poses; views of one array.
+    """Results of a batch of n poses.
 
     Attributes:
-        outputs: by name, shape (n, *shape). Finite always (0 for what is not), meaningless where `status` is not 0.
-        margins: shape (n, n_margins), legal where >= 0; -inf where not finite.
-        status: 0, or the number (from 1) of the first margin that is not >= 0, or -1 where a pose or a result is not
-            finite, shape (n,).
+        rows: all results, shape (n, length); what follows are views of it.
+        layout: name, shape and first column of each output.
+        n_results: numbers of all outputs; margins follow them, then the status.
+        n_margins: margins in a row; 0 for a kernel without them.
     """
 
-    outputs: Mapping[str, Array]
-    margins: Array
-    status: Array
+    rows: Array
+    layout: tuple[tuple[str, tuple[int, ...], int], ...]
+    n_results: int
+    n_margins: int
+
+    @property
+    def outputs(self) -> Mapping[str, Array]:
+        """By name, shape (n, *shape). Finite always (0 for what is not), meaningless where `status` is not 0."""
+        n = len(self.rows)
+        return {
+            name: self.rows[:, first : first + math.prod(shape)].reshape(n, *shape)
+            for name, shape, first in self.layout
+        }
+
+    @property
+    def margins(self) -> Array:
+        """Shape (n, n_margins), legal where >= 0; -inf where not finite."""
+        return self.rows[:, self.n_results : self.n_results + self.n_margins]
+
+    @property
+    def status(self) -> Array:
+        """0, or the number (from 1) of the first margin that is not a finite number >= 0; shape (n,).
+
+        It is -1 where a pose or a result is not finite.
+        """
+        return self.rows[:, self.n_results + self.n_margins]
 
     @property
     def is_legal(self) -> Array:
@@ -54,13 +78,21 @@ class Kernel:
     """
 
     def __init__(self, program: Program, *, is_strict: bool = False, has_margins: bool = True) -> None:
+        """Compile or load.
+
+        Args:
+            program: traced and not yet lowered.
+            is_strict: every operation rounds as IEEE 754 says.
+            has_margins: margins are written; a kernel for one decision is quicker without, its `status` tells.
+        """
         start = time.perf_counter()
         self.program = program
         printed = emit_llvm(program, is_strict=is_strict, has_margins=has_margins)
         self._n_margins, self._length = printed.n_margins, printed.row_length
         self._n_inputs, self._n_parameters = len(program.inputs), len(program.parameters)
-        #: Columns at which the outputs begin, and the end of the last.
-        self._edges = list(accumulate((len(o.nodes) for o in program.outputs), initial=0))
+        self._n_results = printed.n_results
+        first = accumulate((len(o.nodes) for o in program.outputs), initial=0)
+        self._layout = tuple((o.name, o.shape, at) for o, at in zip(program.outputs, first, strict=False))
         self._function, self._engine, self.is_cached = load_kernel(printed.text)
         self.seconds = time.perf_counter() - start
 
@@ -100,7 +132,7 @@ class Kernel:
             padded[: n - whole] = rows[whole:]
             self._run(padded, numbers, last, 1, 1)
             out[whole:] = last[: n - whole]
-        return self._read(out)
+        return KernelResult(rows=out, layout=self._layout, n_results=self._n_results, n_margins=self._n_margins)
 
     def _run(self, rows: Array, numbers: Array, out: Array, n_blocks: int, n_threads: int) -> None:
         n_parts = max(1, min(n_threads, n_blocks * WIDTH // _WORTH_A_THREAD))
@@ -118,16 +150,6 @@ class Kernel:
         with ThreadPoolExecutor(n_parts) as pool:
             list(pool.map(part, range(n_parts)))
 
-    def _read(self, out: Array) -> KernelResult:
-        outputs = {
-            output.name: out[:, first:last].reshape(len(out), *output.shape)
-            for output, first, last in zip(self.program.outputs, self._edges, self._edges[1:], strict=False)
-        }
-        at = self._edges[-1]
-        return KernelResult(
-            outputs=outputs, margins=out[:, at : at + self._n_margins], status=out[:, at + self._n_margins]
-        )
-
 
 def _as_rows(numbers: Any) -> Array:
     """The same array if it is contiguous float64 already."""
@@ -141,7 +163,7 @@ def _address(array: Array) -> int:
     if not array.size:
         return 0
     if array.flags.writeable and array.flags.c_contiguous:
-        return ctypes.addressof(ctypes.c_char.from_buffer(array))
+        return ctypes.addressof(ctypes.c_char.from_buffer(array.data))
     return int(array.ctypes.data)
 
 

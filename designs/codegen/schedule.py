@@ -40,7 +40,7 @@ def _issued(
     order: list[Node], users: dict[Node, list[Node]], missing: dict[Node, int], rank: dict[Node, tuple[int, int]]
 ) -> list[Node]:
     """Start one node a cycle; `rank` decides among those whose arguments are there."""
-    at = {node: 0 for node in order}
+    at = dict.fromkeys(order, 0)
     waiting = [(0, rank[node]) for node in order if not missing[node]]
     heapq.heapify(waiting)
     ready: list[tuple[int, int]] = []

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-from ..language.vocabulary import Number, fabs, fmax, fmin, sqrt, where
+from ..language.vocabulary import Number, fabs, fmax, sqrt, where
 from .graph import Node
 from .loops import repeat_while
 from .program import Output, Program

@@ -7,27 +7,38 @@ import dataclasses
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from ..language.errors import LinkwrightError, UnknownNameError
 from ..language.formulas import LIMIT_SLACK, FormulaMechanism
 from ..language.vectors import Rot, Vec
-from ..language.vocabulary import Number, Require
+from ..language.vocabulary import Number, Require, Requirements
 from .graph import Graph, Node
 from .program import Margin, Output, Program
 
 #: What of a mechanism can be traced: all joints, the driven ones, rate rows, body poses as rows of [R | p].
 OUTPUTS = ("joints", "active", "jacobian", "frames")
 
+#: Share by which a parameter is changed to see whether a program follows it, and how well that must agree.
+_NUDGE, _AGREE = 1e-4, 1e-9
+
 Formula = Callable[[Sequence[Number], Sequence[Number], Require], Mapping[str, Any]]
 
 
 class FixedParametersError(LinkwrightError):
-    """A mechanism whose formulas read numbers that were fixed when it was made."""
+    """A mechanism whose formulas read numbers that were made from its parameters when it was built.
 
-    def __init__(self, name: str) -> None:
-        self.name = name
+    Attributes:
+        mechanism: its name.
+        parameters: those that the formulas do not follow; empty where they read none at all.
+    """
+
+    def __init__(self, mechanism: str, parameters: Sequence[str] = ()) -> None:
+        self.mechanism, self.parameters = mechanism, tuple(parameters)
+        what = f"{', '.join(parameters)} only through numbers" if parameters else "no parameters, only numbers"
         super().__init__(
-            f"{name}: its formulas read none of its parameters, only numbers made from them; trace it with numbers, or "
-            "give it a method with_parameters(section)"
+            f"{mechanism}: its formulas read {what} made when it was built; trace it with numbers, keep to outputs "
+            "that read the parameters themselves, or give it a method with_parameters(section)"
         )
 
 
@@ -86,7 +97,7 @@ def trace_mechanism(
 
     Raises:
         UnknownNameError: lists the outputs, or the branches.
-        FixedParametersError: symbols were asked for and the formulas read none.
+        FixedParametersError: symbols were asked for, and some number that the outputs need does not follow them.
     """
     for name in outputs:
         if name not in OUTPUTS:
@@ -95,25 +106,67 @@ def trace_mechanism(
 
     def formula(pose: Sequence[Number], symbols: Sequence[Number], require: Require) -> dict[str, Any]:
         traced = _with_symbols(mechanism, dict(zip(names, symbols, strict=True))) if has_symbols else mechanism
-        state = traced.solve_state(tuple(pose), traced.read_branch(branch), require)
-        joints = tuple(traced.joint_values(state)) if {"joints", "active"} & set(outputs) or has_limits else ()
-        if has_limits:
-            for joint, value in zip(mechanism.joints, joints, strict=True):
-                require(value - joint.lower + LIMIT_SLACK, f"{joint.name} below its limit")
-            for joint, value in zip(mechanism.joints, joints, strict=True):
-                require(joint.upper - value + LIMIT_SLACK, f"{joint.name} above its limit")
-        read: dict[str, Callable[[], Any]] = {
-            "joints": lambda: joints,
-            "active": lambda: joints[: mechanism.n_active],
-            "jacobian": lambda: traced.rate_rows(state),
-            "frames": lambda: [_pose_rows(R, p) for R, p in traced.body_frames(state)],
-        }
-        return {key: read[key]() for key in outputs}
+        return _results(traced, outputs, branch, pose, require, has_limits=has_limits)
 
     program = trace_formula(mechanism.name, [c.name for c in mechanism.task], names, formula)
-    if has_symbols and not any(node.op == "parameter" for node in program.order()):
-        raise FixedParametersError(mechanism.name)
+    if has_symbols:
+        if not any(node.op == "parameter" for node in program.order()):
+            raise FixedParametersError(mechanism.name)
+        fixed = [name for name in names if not _follows(program, mechanism, name, branch)]
+        if fixed:
+            raise FixedParametersError(mechanism.name, fixed)
     return program
+
+
+def _results(
+    mechanism: Any,
+    outputs: Sequence[str],
+    branch: str | None,
+    pose: Sequence[Number],
+    require: Require,
+    *,
+    has_limits: bool,
+) -> dict[str, Any]:
+    """What a program of the mechanism computes, in any kind of number."""
+    state = mechanism.solve_state(tuple(pose), mechanism.read_branch(branch), require)
+    joints = tuple(mechanism.joint_values(state)) if {"joints", "active"} & set(outputs) or has_limits else ()
+    if has_limits:
+        for joint, value in zip(mechanism.joints, joints, strict=True):
+            require(value - joint.lower + LIMIT_SLACK, f"{joint.name} below its limit")
+        for joint, value in zip(mechanism.joints, joints, strict=True):
+            require(joint.upper - value + LIMIT_SLACK, f"{joint.name} above its limit")
+    read: dict[str, Callable[[], Any]] = {
+        "joints": lambda: joints,
+        "active": lambda: joints[: mechanism.n_active],
+        "jacobian": lambda: mechanism.rate_rows(state),
+        "frames": lambda: [_pose_rows(R, p) for R, p in mechanism.body_frames(state)],
+    }
+    return {key: read[key]() for key in outputs}
+
+
+def _follows(program: Program, mechanism: FormulaMechanism, parameter: str, branch: str | None) -> bool:
+    """The program with another value of a parameter equals the mechanism built with it, at home; True if none can be.
+
+    A whole turn more or less is the same angle.
+    """
+    section = mechanism.sections["parameters"]
+    for factor in (1.0 + _NUDGE, 1.0 - _NUDGE):
+        changed = {parameter: getattr(section, parameter) * factor}
+        try:
+            other: Any = type(mechanism)({**mechanism.sections, "parameters": dataclasses.replace(section, **changed)})  # type: ignore[call-arg]
+        except LinkwrightError:
+            continue
+        with np.errstate(all="ignore"):
+            got = program.evaluate([float(v) for v in mechanism.home], parameter_values(other)).outputs
+            names = [output.name for output in program.outputs]
+            want = _results(other, names, branch, [float(v) for v in mechanism.home], Requirements(), has_limits=False)
+        for name in names:
+            a, b = np.array(got[name], dtype=float), np.array(_flattened(want[name])[1], dtype=float)
+            apart = np.abs(a - b)
+            if np.any(np.minimum(apart, np.abs(apart - 2.0 * np.pi)) > _AGREE * (1.0 + np.abs(b))):
+                return False
+        return True
+    return True
 
 
 def parameter_values(mechanism: FormulaMechanism) -> tuple[float, ...]:

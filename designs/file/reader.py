@@ -147,9 +147,8 @@ def _entry_of(table: Mapping[str, Any], overrides: Sequence[Override], places: P
     try:
         return find_entry(name)
     except UnknownNameError as error:
-        raise places.error(
-            "mechanism", name, f"one of {', '.join(error.known)}{did_you_mean(name, error.known)}"
-        ) from error
+        hint = did_you_mean(name, error.known) or "; one of your own: linkwright --mechanisms FILE.py ..."
+        raise places.error("mechanism", name, f"one of {', '.join(error.known)}{hint}") from error
 
 
 def _plain_keys(table: Mapping[str, Any], prefix: str = "") -> set[str]:

@@ -40,7 +40,8 @@ def _word(name: str, on_arrays: Callable[..., Number]) -> Callable[..., Number]:
 
 sin = _word("sin", np.sin)
 cos = _word("cos", np.cos)
-atan2 = _word("atan2", np.arctan2)
+#: A zero of either sign counts as +0, as in every printed form: rounding must not turn an angle by pi.
+atan2 = _word("atan2", lambda y, x: np.arctan2(y + 0.0, x + 0.0))
 hypot = _word("hypot", np.hypot)
 fabs = _word("fabs", np.abs)
 #: NaN stays NaN in both, so that a bad pose cannot become a legal margin.

@@ -98,6 +98,12 @@ def test_schema_describes_its_design_file(own):
         jsonschema.validate(table, json.loads(own("schema", NAME).stdout))
 
 
+def test_dexterity_measures_it(own):
+    outcome = own("dexterity", str(DESIGN), "--poses", "50", "--json")
+    assert outcome.exit_code == 0, outcome.output
+    json.loads(outcome.stdout)
+
+
 def test_check_passes_on_its_solids(own):
     outcome = own("check", str(DESIGN), "--poses", "40", "--json")
     assert outcome.exit_code == 0, outcome.output

@@ -1,4 +1,4 @@
-"""Zhang, Kong, Sun, Du: section IV. The workspace under the kinematic limits alone: shape, size, and Fig. 9's levelling."""
+"""Zhang, Kong, Sun, Du: section IV. The workspace under kinematic limits alone: shape, size, Fig. 9's levelling."""
 
 from __future__ import annotations
 
