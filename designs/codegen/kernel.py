@@ -103,7 +103,7 @@ class Kernel:
     def __call__(
         self,
         poses: Array,
-        parameters: Sequence[float] = (),
+        parameters: Sequence[float] | Array = (),
         *,
         n_threads: int | None = None,
         into: Array | None = None,

@@ -9,16 +9,23 @@ import sys
 import numpy as np
 import pytest
 
+from linkwright.designs import catalogue
 from linkwright.designs.codegen.emit_c99 import emit_c99
 from linkwright.designs.codegen.emit_js import emit_js
 from linkwright.designs.codegen.emit_llvm import emit_llvm
-from linkwright.designs.codegen.graph import TracedBranchError
+from linkwright.designs.codegen.graph import TracedBranchError, order_of
 from linkwright.designs.codegen.kernel import Kernel
 from linkwright.designs.codegen.passes import eliminated, prepared
-from linkwright.designs.codegen.trace import parameter_values, trace_formula, trace_mechanism
+from linkwright.designs.codegen.schedule import scheduled
+from linkwright.designs.codegen.trace import (
+    FixedParametersError,
+    parameter_values,
+    trace_formula,
+    trace_mechanism,
+)
 from linkwright.designs.hit.mechanism import Hit
 from linkwright.designs.language.errors import UnknownNameError
-from linkwright.designs.language.vocabulary import acos, atan2, cos, fmax, fmin, hypot, sin, sqrt, where
+from linkwright.designs.language.vocabulary import acos, atan2, cos, fabs, fmax, fmin, hypot, sin, sqrt, where
 
 
 def trace(formula, n=2, n_parameters=0):
@@ -139,6 +146,42 @@ def test_a_program_with_symbols_serves_other_dimensions():
     assert result.is_legal.all()
     assert np.abs(result.outputs["joints"] - other.solve_inverse(poses).joints).max() < 1e-13
     assert np.abs(result.outputs["frames"] - other.place_bodies(poses)[:, :, :3]).max() < 1e-11
+
+
+@pytest.mark.parametrize("name", ["inoue", "stewart"])
+def test_symbols_are_refused_for_outputs_that_hang_on_numbers_fixed_at_building(name):
+    mechanism = catalogue.entry(name).default_design().mechanism
+    with pytest.raises(FixedParametersError, match="home_distance") as caught:
+        trace_mechanism(mechanism, ("joints",), has_symbols=True)
+    assert caught.value.mechanism == name
+
+
+def test_a_program_with_symbols_follows_every_parameter_of_every_mechanism(each_mechanism):
+    m, section = each_mechanism, each_mechanism.sections["parameters"]
+    program = trace_mechanism(m, ("active", "jacobian", "frames"), has_symbols=True)
+    changed = {name: getattr(section, name) * (1.0 + 1e-3 * k) for k, name in enumerate(program.parameters, start=-3)}
+    other = type(m)({**m.sections, "parameters": dataclasses.replace(section, **changed)})
+    pose = [float(v) for v in m.home]
+    got, want = program.evaluate(pose, parameter_values(other)), trace_mechanism(other).evaluate(pose)
+    for name in ("active", "jacobian", "frames"):
+        size = len(got.outputs[name])
+        assert (
+            np.abs(np.subtract(got.outputs[name], want.outputs.get(name, want.outputs["joints"])[:size])).max() < 1e-9
+        )
+
+
+def test_scheduled_nodes_are_those_of_the_order_with_arguments_first(traced):
+    program = prepared(traced, is_polynomial=True)
+    nodes = scheduled(program.results)
+    assert set(nodes) == set(order_of(program.results)) and len(nodes) == len(set(nodes))
+    place = {node: k for k, node in enumerate(nodes)}
+    assert all(place[a] < place[node] for node in nodes for a in node.args)
+
+
+def test_the_longest_chain_starts_first():
+    program = trace(lambda x, y: [x * 2.0, sqrt(fabs(y)) / 3.0])
+    nodes = [node.op for node in scheduled(program.results) if node.args]
+    assert nodes.index("fabs") < nodes.index("mul")
 
 
 def test_the_command_line_imports_no_compiler():

@@ -94,3 +94,20 @@ def test_a_cache_that_cannot_be_written_is_no_failure(tmp_path, monkeypatch, hit
     (tmp_path / "file").write_text("in the way")
     monkeypatch.setenv(artefacts.CACHE_VARIABLE, str(tmp_path / "file"))
     assert Kernel(trace_mechanism(hit, ("active",)))(hit.home[None]).is_legal.all()
+
+
+def test_a_kernel_without_margins_has_the_same_results_and_status(hit, rng):
+    program = trace_mechanism(hit, ("active",))
+    poses = hit.home + rng.uniform(-1.0, 1.0, (4000, 6)) * [300.0, 300.0, 300.0, 2.0, 2.0, 2.0]
+    poses[5, 2], poses[6, 0], poses[7, :3] = np.nan, np.inf, 1e200
+    whole, bare = Kernel(program)(poses), Kernel(program, has_margins=False)(poses)
+    assert bare.margins.shape == (4000, 0)
+    assert (bare.status == whole.status).all() and len(set(whole.status)) > 4
+    assert (bare.outputs["active"] == whole.outputs["active"])[whole.is_legal].all()
+
+
+def test_poses_that_cannot_be_written_are_read(hit):
+    kernel = Kernel(trace_mechanism(hit, ("active",)))
+    poses = np.tile(hit.home, (9, 1))
+    poses.flags.writeable = False
+    assert kernel(poses).is_legal.all()

@@ -82,6 +82,30 @@ def test_the_threshold_form_decides_like_the_svd(shape, rng):
         assert 0.02 < np.mean(result.outputs["y"] > 0.0) < 0.98
 
 
+def test_factors_of_rows_do_not_change_the_decision(rng):
+    A = rng.normal(size=(4000, 6, 7))
+
+    def rows(x, p, require):
+        plain = [[x[7 * i + j] for j in range(6)] for i in range(6)]
+        scaled = [[v / (x[7 * i + 6] * 0.5) if i % 2 else -(v * x[7 * i + 6]) for v in r] for i, r in enumerate(plain)]
+        return {"jacobian": scaled}
+
+    program = with_threshold(trace_formula("f", [f"a{k}" for k in range(42)], [], rows)).keep("above")
+    factor = A[:, :, 6:]
+    low = extremes(A[:, :, :6] * np.where(np.arange(6)[:, None] % 2, 2.0 / factor, factor))[:, 0]
+    for t in np.quantile(low, [0.1, 0.5, 0.9]):
+        above = Kernel(program)(A.reshape(4000, 42), [t]).outputs["above"]
+        decided = np.abs(low / t - 1.0) > 1e-9
+        assert ((above > 0.0) == (low > t))[decided].all()
+
+
+def test_a_matrix_that_is_not_finite_is_no_decision():
+    kernel = kernel_of((2, 2), exceeds, ["t"])
+    result = kernel(np.array([[1.0, 0.0, 0.0, 1e200], [1.0, 0.0, 0.0, 2.0]]), [0.5])
+    assert result.status.tolist() == [-1.0, 0.0]
+    assert result.outputs["y"].tolist() == [0.0, 1.0]
+
+
 def test_the_same_formula_runs_on_batches_of_numbers(rng):
     A = rng.normal(size=(50, 6, 6))
     low, high = singular_values([[A[:, i, j] for j in range(6)] for i in range(6)])
