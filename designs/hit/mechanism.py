@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -13,6 +14,7 @@ from ..chains.sections import check_order
 from ..chains.spherical_joint import SphericalJointDimensions, cone_half_angle
 from ..chains.tripod import DELTAS
 from ..chains.tripod_mechanism import TASK, Circles, TripodMechanism
+from ..language.errors import ParameterError
 from ..language.mechanism import Array
 from ..language.vectors import Rot, Vec
 from ..language.vocabulary import Number, Require, Requirements
@@ -60,9 +62,25 @@ class Hit(TripodMechanism):
         self.parameters: HitParameters = self.sections["parameters"]
         self.limits: HitLimits = self.sections["joint_limits"]
         check_order(self.limits, ("theta_1", "theta_2", "elbow"))
+        self.sections["parts.spherical_joint"] = self._fitted_joint()
         self.joints = build_joints(self.parameters, self.limits)
         self.bodies = build_bodies(self.sections)
         self.home = np.array([0.0, 0.0, self._home_height(), 0.0, 0.0, 0.0])
+
+    def _fitted_joint(self) -> SphericalJointDimensions:
+        """The ball joint with a stem that ends on the top bar's edge; it follows unless the design states another.
+
+        Raises:
+            ParameterError: the design states a stem that leaves a gap to the top bar or runs into it.
+        """
+        d: SphericalJointDimensions = self.sections["parts.spherical_joint"]
+        seat = self.parameters.ball_height - self.sections["parts.links"].eye_diameter / 2.0
+        if abs(d.stem_length - seat) < 1e-9:
+            return d
+        if d.stem_length != SphericalJointDimensions().stem_length:
+            allowed = f"must be {seat:g}, ball_height_mm less half of eye_diameter_mm; left out, it follows"
+            raise ParameterError("parts.spherical_joint.stem_length_mm", d.stem_length, allowed)
+        return dataclasses.replace(d, stem_length=seat)
 
     def _home_height(self) -> float:
         """The platform's height with every elbow bent to a right angle: halfway between folded and stretched."""

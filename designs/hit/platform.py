@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from ..chains.pivot import Lay
-from ..chains.spherical_joint import SphericalJointDimensions, bushing, lower_ring, shell_cover, shim, upper_ring
+from ..chains.spherical_joint import SphericalJointDimensions, socket_parts
 from ..chains.tripod import DELTAS
 from ..language.bodies import Part
 from ..language.features import Hole, Milled, Slab, Turned, Vertex
@@ -17,7 +17,6 @@ from .parameters import HitMaterials, HitParameters, HitPlatform
 
 _MOUNT_SCREW = "ISO4762-M6"
 _HANDLE_SCREW, _HANDLE_SCREW_LENGTH = "ISO10642-M6", 20.0
-_COVER_SCREW, _COVER_SCREW_LENGTH = "ISO10642-M2.5", 8.0
 
 
 def platform_parts(sections: Mapping[str, Any]) -> tuple[Part, ...]:
@@ -111,41 +110,14 @@ def _socket(
     """A socket that opens downwards, its ball's centre in the platform's plane, screwed on from above."""
     c, n = math.cos(delta), math.sin(delta)
     lay = Lay(z=(0.0, 0.0, -1.0), x=(c, n, 0.0), origin=(p.platform_radius * c, p.platform_radius * n, 0.0))
-    at, mount, cover_row = lay.at(0.0, 0.0, 0.0), screw(_MOUNT_SCREW), screw(_COVER_SCREW)
+    mount = screw(_MOUNT_SCREW)
     length = max(known for known in mount.lengths if known <= s.plate_thickness + d.mount_depth - 0.5)
-    made = (
-        ("bushing", bushing(d), m.platform, "on the arm, one screw from above", True),
-        ("shim", shim(d), m.pins, "under the lower ring, sets the play", True),
-        ("lower_ring", lower_ring(d), m.seats, "H7/h6 in the bushing", True),
-        ("upper_ring", upper_ring(d), m.seats, "H7/h6 in the bushing", True),
-        ("cover", shell_cover(d), m.platform, "on bushing and upper ring, screwed", True),
+    mount_screw = purchased_part(
+        f"{name}_mount_screw",
+        screw_feature(mount.name, length),
+        mount,
+        lay.at(0.0, 0.0, d.back - s.plate_thickness),
+        length=length,
+        fit="into the bushing's floor",
     )
-    parts = [
-        Part(name=f"{name}_{word}", feature=feature, at=at, material=material, fit=fit, runs_in_joint=runs)
-        for word, feature, material, fit, runs in made
-    ]
-    parts.append(
-        purchased_part(
-            f"{name}_mount_screw",
-            screw_feature(mount.name, length),
-            mount,
-            lay.at(0.0, 0.0, d.back - s.plate_thickness),
-            length=length,
-            fit="into the bushing's floor",
-        )
-    )
-    for k in range(d.n_screws):
-        angle = 2.0 * math.pi * k / d.n_screws
-        r = d.screw_circle / 2.0
-        place = lay.at(r * math.cos(angle), r * math.sin(angle), d.cover_face, flip=True)
-        parts.append(
-            purchased_part(
-                f"{name}_cover_screw_{k + 1}",
-                screw_feature(cover_row.name, _COVER_SCREW_LENGTH),
-                cover_row,
-                place,
-                length=_COVER_SCREW_LENGTH,
-                fit="into the bushing, flush",
-            )
-        )
-    return tuple(parts)
+    return (*socket_parts(d, name, lay, housing=m.platform, seats=m.seats, shims=m.pins), mount_screw)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from linkwright.designs import catalogue
+from linkwright.designs.chains.spherical_joint import SphericalJointDimensions
 from linkwright.designs.hit.mechanism import Hit
 from linkwright.designs.hit.parameters import HitFrame, HitLimits, HitParameters
 from linkwright.designs.language.errors import ParameterError, UnknownNameError
@@ -89,3 +90,10 @@ def test_the_shipped_example_is_the_commented_default_design(name):
     shipped = files("linkwright.designs").joinpath("examples", f"{name}.toml").read_text(encoding="utf-8")
     assert shipped == example_of(name), f"renew it: linkwright new {name} -o designs/examples/{name}.toml --force"
     assert read_design(shipped).hash == catalogue.entry(name).default_design().hash
+
+
+def test_the_stem_of_the_ball_bar_follows_the_ball_and_a_wrong_one_is_refused():
+    hit = Hit({"parameters": HitParameters(ball_height=32.0)})
+    assert hit.sections["parts.spherical_joint"].stem_length == 24.0
+    with pytest.raises(ParameterError, match=r"stem_length_mm = 25.*must be 22"):
+        Hit({"parts.spherical_joint": SphericalJointDimensions(stem_length=25.0)})
