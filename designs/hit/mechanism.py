@@ -62,7 +62,7 @@ class Hit(TripodMechanism):
         self.parameters: HitParameters = self.sections["parameters"]
         self.limits: HitLimits = self.sections["joint_limits"]
         check_order(self.limits, ("theta_1", "theta_2", "elbow"))
-        self.sections["parts.spherical_joint"] = self._fitted_joint()
+        self.sections = {**self.sections, "parts.spherical_joint": self._fitted_joint()}
         self.joints = build_joints(self.parameters, self.limits)
         self.bodies = build_bodies(self.sections)
         self.home = np.array([0.0, 0.0, self._home_height(), 0.0, 0.0, 0.0])
