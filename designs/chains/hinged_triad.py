@@ -17,8 +17,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..language.formulas import FormulaMechanism
+from ..language.forward import Candidates
+from ..language.mechanism import ForwardSolution
+from ..language.poses import task_from_pose
 from ..language.vectors import Vec
-from ..language.vocabulary import Number, cos, sin
+from ..language.vocabulary import Number, Require, Requirements, cos, sin
 from .triples import Triple
 
 _PAIRS = ((0, 1), (1, 2), (2, 0))
@@ -155,6 +159,51 @@ def _triangle(points: np.ndarray) -> np.ndarray:
     y = y - np.einsum("ni,ni->n", x, y)[:, None] * x
     y = y / np.linalg.norm(y, axis=-1, keepdims=True)
     return np.stack([x, y, np.cross(x, y)], axis=-1)
+
+
+def solve_triad(
+    mechanism: FormulaMechanism,
+    legs: Sequence[TriadLeg],
+    active: np.ndarray,
+    locate: Callable[[tuple[np.ndarray, ...], Require], tuple[Sequence[np.ndarray], Sequence[np.ndarray]]],
+    leans: Callable[[np.ndarray], np.ndarray],
+    rest_radius: float,
+    near: np.ndarray | None,
+) -> ForwardSolution:
+    """Poses for six driven values: every leg's chain places its point on a circle, Newton closes the three circles.
+
+    Args:
+        mechanism: whose inverse a pose must return to; gives home.
+        legs: hinges and platform points.
+        active: driven values, shape (n, 6) [rad or mm].
+        locate: points along their hinges and their radii [mm] from the six columns.
+        leans: leans of the three points at poses (n, 6), shape (n, 3) [rad].
+        rest_radius: stands for the radius where a leg's chain does not close [mm].
+        near: expected poses (n, 6), or None; when more than one legal pose is found, the nearest is the answer.
+    """
+    active = np.atleast_2d(np.asarray(active, dtype=float))
+    n, need = len(active), Requirements()
+    finite = np.all(np.isfinite(active), axis=-1)
+    given = np.where(finite[:, None], active, 0.0)
+    with np.errstate(all="ignore"):
+        along, radius = locate(tuple(given.T), need)
+    closed = finite & np.all(need.stacked((n,)) >= 0.0, axis=-1)
+    candidates = Candidates(n, mechanism.home, near)
+
+    def offer(Ts: np.ndarray, residual: np.ndarray) -> None:
+        poses = task_from_pose(Ts)
+        inverse = mechanism.solve_inverse(poses)
+        back = np.max(np.abs(inverse.joints[:, :6] - given), axis=-1)
+        candidates.offer(poses, closed & (residual < 1e-9) & inverse.is_reachable & (back < 1e-6), residual)
+
+    search_triad(
+        legs,
+        np.where(closed[:, None], np.stack(along, axis=-1), 0.0),
+        np.where(closed[:, None], np.stack(radius, axis=-1), rest_radius),
+        offer,
+        None if candidates.near is None else leans(candidates.near),
+    )
+    return candidates.solution()
 
 
 def search_triad(

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from ..chains.hinged_arm import ARM_RANGES, Arm
 from ..chains.hinged_five_bar import ELBOWS, read_elbows
-from ..chains.hinged_triad import TriadLeg, search_triad
+from ..chains.hinged_triad import TriadLeg, solve_triad
 from ..chains.sections import check_order, resolve_sections
 from ..language.formulas import FormulaMechanism
-from ..language.forward import Candidates
 from ..language.mechanism import Array, Coordinate, ForwardSolution
-from ..language.poses import task_from_pose
 from ..language.vectors import Rot, Vec
 from ..language.vocabulary import Number, Require, Requirements
 from .joints import build_arms, build_bodies, build_joints, build_legs
@@ -91,33 +90,13 @@ class Inoue(FormulaMechanism):
         Each arm's shoulders place its tip on a circle; Newton closes the three circles from many leans. When more than
         one legal pose is found the answer is refused unless `near` decides.
         """
-        active = np.atleast_2d(np.asarray(active, dtype=float))
-        n, need = len(active), Requirements()
-        finite = np.all(np.isfinite(active), axis=-1)
-        given = np.where(finite[:, None], active, 0.0)
-        with np.errstate(all="ignore"):
-            along, radius = locate_tips(self.arms, tuple(given.T), need)
-        closed = finite & np.all(need.stacked((n,)) >= 0.0, axis=-1)
-        candidates = Candidates(n, self.home, near)
+        rest = self.parameters.home_distance
+        return solve_triad(self, self.legs, active, partial(locate_tips, self.arms), self._leans, rest, near)
 
-        def offer(Ts: Array, residual: Array) -> None:
-            poses = task_from_pose(Ts)
-            inverse = self.solve_inverse(poses)
-            back = np.max(np.abs(inverse.joints[:, :6] - given), axis=-1)
-            candidates.offer(poses, closed & (residual < 1e-9) & inverse.is_reachable & (back < 1e-6), residual)
-
-        first = None
-        if candidates.near is not None:
-            state = self._evaluate(candidates.near, None, Requirements())
-            first = np.stack([arm.five_bar.waist for arm in state.arms], axis=-1)
-        search_triad(
-            self.legs,
-            np.where(closed[:, None], np.stack(along, axis=-1), 0.0),
-            np.where(closed[:, None], np.stack(radius, axis=-1), self.parameters.home_distance),
-            offer,
-            first,
-        )
-        return candidates.solution()
+    def _leans(self, poses: Array) -> Array:
+        """Waists of the arms at poses [rad], shape (n, 3)."""
+        state = self._evaluate(poses, None, Requirements())
+        return np.stack([arm.five_bar.waist for arm in state.arms], axis=-1)
 
     def derived_numbers(self) -> Mapping[str, tuple[float, str, str]]:
         """Numbers that follow from the parameters."""

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from ..chains.hinged_triad import TriadLeg, search_triad, triad_legs
+from ..chains.hinged_triad import TriadLeg, solve_triad, triad_legs
 from ..chains.sections import check_order, resolve_sections
 from ..language.errors import UnknownNameError
 from ..language.formulas import FormulaMechanism
-from ..language.forward import Candidates
 from ..language.mechanism import Array, Coordinate, ForwardSolution
-from ..language.poses import task_from_pose
 from ..language.vectors import Rot, Vec
 from ..language.vocabulary import Number, Require, Requirements
 from .joints import build_bodies, build_joints
@@ -107,29 +106,8 @@ class Stewart(FormulaMechanism):
         Each pair's lengths place its ball on a circle; Newton closes the three circles from many leans. When more than
         one legal pose is found the answer is refused unless `near` decides.
         """
-        active = np.atleast_2d(np.asarray(active, dtype=float))
-        n, need = len(active), Requirements()
-        finite = np.all(np.isfinite(active), axis=-1)
-        given = np.where(finite[:, None], active, 0.0)
-        along, radius = locate_pins(self.parameters, tuple(given.T), need)
-        closed = finite & np.all(need.stacked((n,)) >= 0.0, axis=-1)
-        candidates = Candidates(n, self.home, near)
-
-        def offer(Ts: Array, residual: Array) -> None:
-            poses = task_from_pose(Ts)
-            inverse = self.solve_inverse(poses)
-            back = np.max(np.abs(inverse.joints[:, :6] - given), axis=-1)
-            candidates.offer(poses, closed & (residual < 1e-9) & inverse.is_reachable & (back < 1e-6), residual)
-
-        first = None if candidates.near is None else self._leans(candidates.near)
-        search_triad(
-            self.legs,
-            np.where(closed[:, None], np.stack(along, axis=-1), 0.0),
-            np.where(closed[:, None], np.stack(radius, axis=-1), self.parameters.home_distance),
-            offer,
-            first,
-        )
-        return candidates.solution()
+        rest = self.parameters.home_distance
+        return solve_triad(self, self.legs, active, partial(locate_pins, self.parameters), self._leans, rest, near)
 
     def _leans(self, poses: Array) -> Array:
         """Leans of the balls about the base lines [rad], shape (n, 3)."""
