@@ -7,9 +7,6 @@ import json
 import os
 import tempfile
 import warnings
-from functools import cache
-from importlib.resources import files
-from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +14,7 @@ import numpy as np
 
 from linkwright.designs.language.joints import Joint
 from linkwright.generator.assembly import AssembledBody
-from linkwright.generator.store import Store
+from linkwright.generator.store import Store, code_hash
 from linkwright.generator.surfaces import Surface, SurfaceKind
 
 Array = np.ndarray
@@ -78,7 +75,7 @@ def _checksum(key: str, facts: Any) -> str:
 
 def key_of(what: str, *evidence: Any) -> str:
     """Key of a measurement: its name, plain JSON values that it depends on, and this storey's code."""
-    text = json.dumps([what, evidence, _code_hash()], separators=(",", ":"), allow_nan=False)
+    text = json.dumps([what, evidence, code_hash(__package__)], separators=(",", ":"), allow_nan=False)
     return hashlib.sha256(text.encode()).hexdigest()
 
 
@@ -133,21 +130,3 @@ def rounded(numbers: Any) -> list[float]:
     """Numbers at the grain at which places are compared, flat; -0.0 is 0.0."""
     grains = np.round(np.asarray(numbers, dtype=float).reshape(-1) / _GRAIN)
     return [float(g) * _GRAIN + 0.0 for g in grains]
-
-
-@cache
-def _code_hash() -> str:
-    digest = hashlib.sha256()
-    for name, content in sorted(_sources(files(__package__), "")):
-        digest.update(name.encode() + b"\0" + content + b"\0")
-    return digest.hexdigest()
-
-
-def _sources(folder: Traversable, prefix: str) -> list[tuple[str, bytes]]:
-    found = []
-    for entry in folder.iterdir():
-        if entry.is_dir() and entry.name != "__pycache__":
-            found += _sources(entry, f"{prefix}{entry.name}/")
-        elif entry.name.endswith(".py"):
-            found.append((prefix + entry.name, entry.read_bytes()))
-    return found

@@ -33,7 +33,7 @@ _ARRAYS = ("vertices", "triangles", "faces")
 def content_key(feature: Feature, deviation: float) -> str:
     """sha256 of all that a solid depends on: numbers, mesh deviation [mm], this storey's code, the kernel's version."""
     text = json.dumps(
-        [_canonical(feature), repr(float(deviation)), _code_hash(), _kernel_version()], separators=(",", ":")
+        [_canonical(feature), repr(float(deviation)), code_hash(__package__), _kernel_version()], separators=(",", ":")
     )
     return hashlib.sha256(text.encode()).hexdigest()
 
@@ -52,9 +52,10 @@ def _canonical(value: Any) -> Any:
 
 
 @cache
-def _code_hash() -> str:
+def code_hash(package: str) -> str:
+    """sha256 of a package's Python sources, sub-packages included: what was computed by other code is not recalled."""
     digest = hashlib.sha256()
-    for name, content in sorted(_sources(files(__package__), "")):
+    for name, content in sorted(_sources(files(package), "")):
         digest.update(name.encode() + b"\0" + content + b"\0")
     return digest.hexdigest()
 
