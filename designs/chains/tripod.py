@@ -17,6 +17,14 @@ import numpy as np
 from ..language.vectors import Rot, Vec, rot_y, rot_z
 from ..language.vocabulary import Number, Require, atan2, cos, hypot, sin, sqrt
 
+#: Working modes of a leg with one elbow sign: (pin, elbow); +1 stands up, and has the left elbow on the left.
+LEG_BRANCHES: dict[str, tuple[float, float]] = {
+    "up-out": (1.0, 1.0),
+    "up-in": (1.0, -1.0),
+    "down-out": (-1.0, 1.0),
+    "down-in": (-1.0, -1.0),
+}
+
 DELTAS = (0.0, 2.0 * math.pi / 3.0, 4.0 * math.pi / 3.0)
 
 #: The pairs of legs whose balls the plate keeps sqrt(3) r apart (eq. 12).

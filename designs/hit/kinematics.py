@@ -12,14 +12,6 @@ from ..language.vectors import Rot, Vec, rot_fixed_xyz
 from ..language.vocabulary import Number, Require, atan2, cos, sin
 from .parameters import HitParameters
 
-#: Working modes of a leg: (pin, elbow) signs; +1 stands up, and has its elbows outside.
-BRANCHES: dict[str, tuple[float, float]] = {
-    "up-out": (1.0, 1.0),
-    "up-in": (1.0, -1.0),
-    "down-out": (-1.0, 1.0),
-    "down-in": (-1.0, -1.0),
-}
-
 
 class LegState(NamedTuple):
     """One leg at a pose: ball [mm], axes and lean of its plane [rad], tip in the plane [mm], link directions [rad]."""

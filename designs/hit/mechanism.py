@@ -12,7 +12,7 @@ import numpy as np
 from ..chains.pantograph import locate_kite_tip
 from ..chains.sections import check_order
 from ..chains.spherical_joint import SphericalJointDimensions, cone_half_angle
-from ..chains.tripod import DELTAS
+from ..chains.tripod import DELTAS, LEG_BRANCHES
 from ..chains.tripod_mechanism import TASK, Circles, TripodMechanism
 from ..language.errors import ParameterError
 from ..language.mechanism import Array
@@ -20,7 +20,7 @@ from ..language.vectors import Rot, Vec
 from ..language.vocabulary import Number, Require, Requirements
 from .bodies import build_bodies
 from .joints import build_joints
-from .kinematics import BRANCHES, HitState, body_frames, joint_values, rate_rows, solve_state
+from .kinematics import HitState, body_frames, joint_values, rate_rows, solve_state
 from .parameters import (
     HitBase,
     HitFrame,
@@ -55,7 +55,7 @@ class Hit(TripodMechanism):
     title = "HIT 6-DOF haptic device: three nine-bar pantographs, wide ball joints"
     source = "Zhang, Kong, Sun, Du: Design and Analysis of a Novel Haptic Device"
     section_classes = SECTIONS
-    leg_branches = BRANCHES
+    leg_branches = LEG_BRANCHES
 
     def __init__(self, sections: Mapping[str, Any]) -> None:
         super().__init__(sections)

@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 
 from ..chains.sections import check_order
-from ..chains.tripod import DELTAS
+from ..chains.tripod import DELTAS, LEG_BRANCHES
 from ..chains.tripod_mechanism import TASK, Circles, TripodMechanism, leg_bodies
 from ..language.errors import ParameterError
 from ..language.mechanism import Array
 from ..language.vectors import Rot, Vec
 from ..language.vocabulary import Number, Require
 from .joints import build_joints
-from .kinematics import BRANCHES, UciState, body_frames, joint_values, locate_tip, rate_rows, solve_state
+from .kinematics import UciState, body_frames, joint_values, locate_tip, rate_rows, solve_state
 from .parameters import UciLimits, UciParameters
 
 __all__ = ["SECTIONS", "TASK", "Uci"]
@@ -32,7 +32,7 @@ class Uci(TripodMechanism):
     title = "UCI 6-DOF hand controller: three pantographs on base pins, balls at their tips"
     source = "Long, Collins: A pantograph linkage parallel platform master hand controller for force-reflection"
     section_classes = SECTIONS
-    leg_branches = BRANCHES
+    leg_branches = LEG_BRANCHES
 
     def __init__(self, sections: Mapping[str, Any]) -> None:
         super().__init__(sections)
