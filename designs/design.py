@@ -25,7 +25,6 @@ class Clearance:
     mesh_deviation: float = length(
         0.02, "largest distance between a solid and the mesh that stands for it in the checks"
     )
-    fit_share: float = length(0.002, "how far a measured running clearance may lie from the stated one")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
