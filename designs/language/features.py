@@ -63,7 +63,8 @@ class Turned:
     """A solid of revolution about z.
 
     Attributes:
-        profile: closed polygon (last joins first) of at least three vertices with r >= 0.
+        profile: closed polygon (last joins first) of at least three vertices with r >= 0, counter-clockwise with r to
+            the right and z up; a clockwise one is refused, for only so does a negative length show.
         holes, cross_holes: cut afterwards.
         hex_socket: (across flats, z of its mouth, depth downwards) or None.
     """
