@@ -137,7 +137,7 @@ def test_the_key_changes_with_every_number_and_only_with_numbers():
 
 def test_the_key_changes_with_the_code_and_the_kernel(rod, monkeypatch):
     key = content_key(rod, 0.05)
-    monkeypatch.setattr(store, "_code_hash", lambda: "another")
+    monkeypatch.setattr(store, "code_hash", lambda package: "another")
     assert content_key(rod, 0.05) != key
     monkeypatch.undo()
     monkeypatch.setattr(store, "_kernel_version", lambda: "cadquery-ocp 0")
